@@ -1,0 +1,5 @@
+#![no_std]
+//! x
+pub mod joint;
+pub mod model;
+pub mod real;
