@@ -1,1 +1,49 @@
 //! Helpers shared by the workspace tests.
+
+use controller_core::dynamics::Dynamics;
+use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::kinematics::Kinematics;
+use controller_core::model::{ArmModel, LWR_IV};
+
+pub mod random;
+
+/// The arm under test.
+#[must_use]
+pub fn lwr() -> ArmModel<f64> {
+    ArmModel::new(&LWR_IV).expect("the built-in arm is valid")
+}
+
+/// Kinematics and dynamics of the core at one state.
+#[must_use]
+pub fn evaluate(model: &ArmModel<f64>, state: &JointState<f64>) -> (Kinematics<f64>, Dynamics<f64>) {
+    let kinematics = Kinematics::new(model, state);
+    let dynamics = Dynamics::new(model, &kinematics, state);
+    (kinematics, dynamics)
+}
+
+/// The unit vector of joint `i`, counted from 0.
+#[must_use]
+pub fn unit(i: usize) -> JointVector<f64> {
+    JointVector::from_fn(|j, _| f64::from(u8::from(i == j)))
+}
+
+/// Largest entry of |a - b| relative to the largest of |b| (at least `floor`).
+#[must_use]
+pub fn relative<'a>(
+    a: impl IntoIterator<Item = &'a f64>,
+    b: impl IntoIterator<Item = &'a f64>,
+    floor: f64,
+) -> f64 {
+    let (mut difference, mut scale) = (0.0f64, floor);
+    for (a, b) in a.into_iter().zip(b) {
+        difference = difference.max((a - b).abs());
+        scale = scale.max(b.abs());
+        if !(a.is_finite() && b.is_finite()) {
+            return f64::INFINITY;
+        }
+    }
+    difference / scale
+}
+
+/// Index of the joint count, for loops in tests.
+pub const JOINTS: core::ops::Range<usize> = 0..DOF;

@@ -1,0 +1,342 @@
+//! The task hierarchy from one factorisation.
+//!
+//! The stacked task rows J = \[J_1; J_2; ..\] are whitened by the mass matrix
+//! M = L L^T and factored once, rows in priority order and without pivoting:
+//!
+//! ```text
+//! A = J L^-T = R Q_t,    R lower triangular,    Q = [Q_t; Q_n] orthogonal
+//! ```
+//!
+//! Row k of Q_t is the part of task row k that no row above it can reach. So
+//! the projected Jacobians (17)-(21) of level i, with R_ii and Q_i its diagonal
+//! block and rows, are
+//!
+//! ```text
+//! Jbar_i = R_ii Q_i L^T      Jbar_i^# = L^-T Q_i^T R_ii^-1      Lambda_i = (R_ii R_ii^T)^-1
+//! Z      = Q_n L^-1          Z M Z^T  = 1                       v = Q_n L^T dq
+//! ```
+//!
+//! and (22)-(25) hold by orthogonality. What a moving level does to the levels
+//! below it sits in the off-diagonal blocks of R; forward substitution takes
+//! care of it. The factorisation uses Householder reflections, whose Q is
+//! orthogonal to rounding however close to singular the tasks are.
+
+use heapless::Vec;
+
+use crate::fault::Flags;
+use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::linalg::Cholesky;
+use crate::real::Real;
+use crate::task::{MAX_ROWS, TaskRows};
+
+/// A row whose R_kk^2 is below this \[1/kg\] is not resolvable given the rows
+/// above it: it gets no acceleration.
+pub const RANK_THRESHOLD: f64 = 1e-8;
+
+/// One joint-space row (or column) per task row of a level.
+pub type LevelRows<T> = Vec<JointVector<T>, MAX_ROWS>;
+
+/// R and Q of the whitened task rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Hierarchy<T: Real> {
+    count: usize,
+    level_start: [usize; MAX_ROWS],
+    /// Row k holds R_k0 .. R_kk, zeros behind.
+    r: [JointVector<T>; MAX_ROWS],
+    /// 1 / R_kk, 0 where the row is rank deficient.
+    inverse_pivot: [T; MAX_ROWS],
+    /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T.
+    reflector: [JointVector<T>; MAX_ROWS],
+    scale: [T; MAX_ROWS],
+    deficient: Flags,
+}
+
+impl<T: Real> Hierarchy<T> {
+    /// Factors J L^-T. With [`Cholesky::identity`] it factors J itself, which
+    /// gives the unweighted (Moore-Penrose) hierarchy.
+    #[must_use]
+    #[inline]
+    pub fn new(rows: &TaskRows<T>, cholesky: &Cholesky<T>) -> Self {
+        let mut h = Self {
+            count: rows.count,
+            level_start: rows.level_start,
+            r: [zeros(); MAX_ROWS],
+            inverse_pivot: [T::ZERO; MAX_ROWS],
+            reflector: [zeros(); MAX_ROWS],
+            scale: [T::ZERO; MAX_ROWS],
+            deficient: Flags::NONE,
+        };
+        for k in 0..MAX_ROWS {
+            if k < rows.count {
+                let mut row = cholesky.solve_lower(&rows.jacobian[k]);
+                for j in 0..k {
+                    h.reflect(j, &mut row);
+                }
+                h.eliminate(k, row);
+            }
+        }
+        h
+    }
+
+    /// The reflection that leaves `row` zero behind entry k.
+    #[inline(always)]
+    fn eliminate(&mut self, k: usize, mut row: JointVector<T>) {
+        let mut norm_squared = T::ZERO;
+        for i in k..DOF {
+            norm_squared += row[i] * row[i];
+        }
+        let norm = norm_squared.square_root();
+        let pivot = -norm.with_sign_of(row[k]);
+        let resolvable = norm_squared >= T::from_f64(RANK_THRESHOLD);
+        // Below this a row is zero in either precision: no reflection.
+        let turns = norm_squared > T::from_f64(1e-30);
+
+        let mut reflector: JointVector<T> = zeros();
+        for i in k..DOF {
+            reflector[i] = row[i];
+            row[i] = T::ZERO;
+        }
+        reflector[k] -= pivot;
+        row[k] = pivot;
+        let scale = norm * (norm + (pivot + reflector[k]).magnitude());
+        self.scale[k] = if turns { T::ONE / scale } else { T::ZERO };
+        self.inverse_pivot[k] = if resolvable { T::ONE / pivot } else { T::ZERO };
+        self.deficient.set_if(k, !resolvable);
+        self.reflector[k] = reflector;
+        self.r[k] = row;
+    }
+
+    #[inline(always)]
+    fn reflect(&self, k: usize, x: &mut JointVector<T>) {
+        let projection = self.reflector[k].dot(x) * self.scale[k];
+        *x -= self.reflector[k] * projection;
+    }
+
+    /// Number of task rows m.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Rows that are not resolvable given the rows above them.
+    #[must_use]
+    pub fn deficient(&self) -> Flags {
+        self.deficient
+    }
+
+    /// |R_kk| per row \[1/sqrt(kg)\]: how far the row is from being
+    /// unresolvable given the rows above it. 0 behind the last row.
+    #[must_use]
+    pub fn conditioning(&self) -> [T; MAX_ROWS] {
+        let mut diagonal = [T::ZERO; MAX_ROWS];
+        for k in 0..MAX_ROWS {
+            diagonal[k] = self.r[k][k].magnitude();
+        }
+        diagonal
+    }
+
+    /// Q x: entries 0..m are Q_t x, the rest Q_n x.
+    #[must_use]
+    #[inline]
+    pub fn rotate(&self, x: &JointVector<T>) -> JointVector<T> {
+        let mut x = *x;
+        for k in 0..MAX_ROWS {
+            if k < self.count {
+                self.reflect(k, &mut x);
+            }
+        }
+        x
+    }
+
+    /// Q^T x = Q_t^T x\[0..m\] + Q_n^T x\[m..\].
+    #[must_use]
+    #[inline]
+    pub fn rotate_back(&self, x: &JointVector<T>) -> JointVector<T> {
+        let mut x = *x;
+        for k in (0..MAX_ROWS).rev() {
+            if k < self.count {
+                self.reflect(k, &mut x);
+            }
+        }
+        x
+    }
+
+    /// `x` with only its task entries 0..m kept.
+    #[must_use]
+    #[inline]
+    pub fn task_part(&self, x: &JointVector<T>) -> JointVector<T> {
+        let mut part = *x;
+        for (k, value) in part.iter_mut().enumerate() {
+            if k >= self.count {
+                *value = T::ZERO;
+            }
+        }
+        part
+    }
+
+    /// `x` with only its null-space entries m.. kept.
+    #[must_use]
+    #[inline]
+    pub fn null_part(&self, x: &JointVector<T>) -> JointVector<T> {
+        x - self.task_part(x)
+    }
+
+    /// y = R^-1 b, the coupled solution: what levels above do to a row is taken
+    /// off before the row acts. 0 in rank-deficient rows and behind row m.
+    #[must_use]
+    #[inline]
+    pub fn solve(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
+        let mut y: JointVector<T> = zeros();
+        for k in 0..MAX_ROWS {
+            let known = self.r[k].dot(&y);
+            y[k] = (b[k] - known) * self.inverse_pivot[k];
+        }
+        y
+    }
+
+    /// R_ii^-1 b_i per level i: as [`Hierarchy::solve`] but blind to the coupling
+    /// between levels, as (26), (34) and (51) are printed.
+    #[must_use]
+    #[inline]
+    pub fn solve_uncoupled(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
+        let mut y: JointVector<T> = zeros();
+        for k in 0..MAX_ROWS {
+            let mut known = T::ZERO;
+            for j in 0..k {
+                if j >= self.level_start[k] {
+                    known += self.r[k][j] * y[j];
+                }
+            }
+            y[k] = (b[k] - known) * self.inverse_pivot[k];
+        }
+        y
+    }
+
+    /// R^-T s for the task entries of `s`. 0 in rank-deficient rows.
+    #[must_use]
+    #[inline]
+    pub fn solve_transposed(&self, s: &JointVector<T>) -> [T; MAX_ROWS] {
+        let mut rest = *s;
+        let mut x = [T::ZERO; MAX_ROWS];
+        for k in (0..MAX_ROWS).rev() {
+            let value = rest[k] * self.inverse_pivot[k];
+            x[k] = value;
+            rest -= self.r[k] * value;
+        }
+        x
+    }
+}
+
+/// Views: the paper's matrices, for inspection and tests. Not in the cycle.
+impl<T: Real> Hierarchy<T> {
+    /// Row k of Q.
+    fn q_row(&self, k: usize) -> JointVector<T> {
+        let mut unit: JointVector<T> = zeros();
+        unit[k] = T::ONE;
+        self.rotate_back(&unit)
+    }
+
+    /// Number of levels.
+    #[must_use]
+    pub fn levels(&self) -> usize {
+        (0..self.count)
+            .filter(|&k| self.level_start[k] == k)
+            .count()
+    }
+
+    /// Rows `start..end` of level `level`, counted from 0; empty beyond the last.
+    #[must_use]
+    pub fn level_range(&self, level: usize) -> core::ops::Range<usize> {
+        let mut starts = (0..self.count)
+            .filter(|&k| self.level_start[k] == k)
+            .skip(level);
+        let start = starts.next().unwrap_or(self.count);
+        start..starts.next().unwrap_or(self.count)
+    }
+
+    /// Jbar_i, m_i rows: dx of level i in the motion that levels above allow.
+    #[must_use]
+    pub fn jbar(&self, level: usize, cholesky: &Cholesky<T>) -> LevelRows<T> {
+        let range = self.level_range(level);
+        let row = |k: usize| {
+            range.clone().fold(zeros(), |sum: JointVector<T>, j| {
+                sum + cholesky.lower_times(&self.q_row(j)) * self.r[k][j]
+            })
+        };
+        range.clone().map(row).collect()
+    }
+
+    /// Columns of Jbar_i^#, the dynamically consistent inverse, m_i of them.
+    #[must_use]
+    pub fn jbar_pinv(&self, level: usize, cholesky: &Cholesky<T>) -> LevelRows<T> {
+        let range = self.level_range(level);
+        let column = |k: usize| {
+            let mut unit = [T::ZERO; MAX_ROWS];
+            unit[k] = T::ONE;
+            // R^-1 of a unit vector, cut to the level: the column of R_ii^-1.
+            let solved = self.solve(&unit);
+            let whitened = range.clone().fold(zeros(), |sum: JointVector<T>, j| {
+                sum + self.q_row(j) * solved[j]
+            });
+            cholesky.solve_upper(&whitened)
+        };
+        range.clone().map(column).collect()
+    }
+
+    /// Lambda_i = (Jbar_i M^-1 Jbar_i^T)^-1 \[kg\], the inertia of level i: entry
+    /// (j, k) at `[j][k]`, m_i x m_i, zeros behind.
+    #[must_use]
+    pub fn task_inertia(&self, level: usize) -> JointMatrix<T> {
+        let range = self.level_range(level);
+        let inverse = |k: usize| {
+            let mut unit = [T::ZERO; MAX_ROWS];
+            unit[k] = T::ONE;
+            let mut column = self.solve(&unit);
+            for (j, value) in column.iter_mut().enumerate() {
+                if j >= range.end {
+                    *value = T::ZERO;
+                }
+            }
+            column
+        };
+        let mut lambda = zeros();
+        for j in range.clone() {
+            for k in range.clone() {
+                lambda[(j - range.start, k - range.start)] = inverse(j).dot(&inverse(k));
+            }
+        }
+        lambda
+    }
+
+    /// Z, 7 - m rows: one basis of the null space with Z M Z^T = 1.
+    #[must_use]
+    pub fn null_basis(&self, cholesky: &Cholesky<T>) -> LevelRows<T> {
+        (self.count..DOF)
+            .map(|k| cholesky.solve_upper(&self.q_row(k)))
+            .collect()
+    }
+
+    /// v = Z M dq, the 7 - m null-space velocities that belong to
+    /// [`Hierarchy::null_basis`].
+    #[must_use]
+    pub fn null_velocity(&self, cholesky: &Cholesky<T>, dq: &JointVector<T>) -> Vec<T, DOF> {
+        self.rotate(&cholesky.upper_times(dq))
+            .iter()
+            .skip(self.count)
+            .copied()
+            .collect()
+    }
+
+    /// N = L^-T Q_n^T Q_n L^T, the null-space projector of velocities.
+    #[must_use]
+    pub fn null_projector(&self, cholesky: &Cholesky<T>) -> JointMatrix<T> {
+        let mut projector: JointMatrix<T> = zeros();
+        for j in 0..DOF {
+            let mut unit: JointVector<T> = zeros();
+            unit[j] = T::ONE;
+            let inside = self.null_part(&self.rotate(&cholesky.upper_times(&unit)));
+            projector.set_column(j, &cholesky.solve_upper(&self.rotate_back(&inside)));
+        }
+        projector
+    }
+}

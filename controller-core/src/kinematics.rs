@@ -1,0 +1,149 @@
+//! Frames, joint axes and their rates, from one pass over the chain; points on
+//! any link with position, velocity and Jacobian rows.
+
+use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
+use crate::model::ArmModel;
+use crate::real::Real;
+
+/// Frames 0 (fixed) to 7 (flange side).
+const FRAMES: usize = DOF + 1;
+
+/// A point fixed to a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkPoint<T: Real> {
+    /// Link that carries the point, 1..=7.
+    pub link: usize,
+    /// Position \[m\] in the DH frame of that link.
+    pub offset: Vector3<T>,
+}
+
+impl<T: Real> LinkPoint<T> {
+    /// The same point in another precision.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> LinkPoint<U> {
+        LinkPoint {
+            link: self.link,
+            offset: self.offset.map(|x| U::from_f64(x.to_f64())),
+        }
+    }
+}
+
+/// Where everything is and how fast it moves: base-plate frame, SI units.
+///
+/// Index i of the arrays is DH frame i, which moves with link i (0 is fixed).
+#[derive(Clone, Copy, Debug)]
+pub struct Kinematics<T: Real> {
+    /// Orientation of frame i: its axes are the columns, in base-plate axes.
+    pub rotation: [Matrix3<T>; FRAMES],
+    /// Origin of frame i \[m\].
+    pub origin: [Vector3<T>; FRAMES],
+    /// Angular velocity of link i \[rad/s\].
+    pub angular_velocity: [Vector3<T>; FRAMES],
+    /// Velocity of the origin of frame i, carried by link i \[m/s\].
+    pub origin_velocity: [Vector3<T>; FRAMES],
+    /// Axis of joint i + 1, unit vector (z of frame i).
+    pub axis: [Vector3<T>; DOF],
+    /// Time derivative of the axis of joint i + 1 \[1/s\].
+    pub axis_rate: [Vector3<T>; DOF],
+}
+
+/// A point of the arm at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointMotion<T: Real> {
+    /// Position \[m\], base-plate frame.
+    pub x: Vector3<T>,
+    /// Velocity \[m/s\], base-plate axes.
+    pub dx: Vector3<T>,
+}
+
+/// J (3 x 7, dx = J dq) and dJ/dt of a point, stored by rows x, y, z.
+#[derive(Clone, Copy, Debug)]
+pub struct PointJacobian<T: Real> {
+    /// Rows of J \[m\], base-plate axes.
+    pub jacobian: [JointVector<T>; 3],
+    /// Rows of dJ/dt \[m/s\], base-plate axes.
+    pub jacobian_dot: [JointVector<T>; 3],
+}
+
+impl<T: Real> Kinematics<T> {
+    /// One pass from base to flange.
+    #[must_use]
+    #[inline]
+    pub fn new(model: &ArmModel<T>, state: &JointState<T>) -> Self {
+        let zero = Vector3::from([T::ZERO; 3]);
+        let mut k = Self {
+            rotation: [zeros(); FRAMES],
+            origin: [zero; FRAMES],
+            angular_velocity: [zero; FRAMES],
+            origin_velocity: [zero; FRAMES],
+            axis: [zero; DOF],
+            axis_rate: [zero; DOF],
+        };
+        k.rotation[0] = Matrix3::identity();
+        k.origin[0].z = model.base_height;
+        for i in 0..DOF {
+            let link = &model.links[i];
+            let (sin, cos) = state.q[i].sine_cosine();
+            let x = k.rotation[i].column(0).into_owned();
+            let y = k.rotation[i].column(1).into_owned();
+            let z = k.rotation[i].column(2).into_owned();
+            let new_x = x * cos + y * sin;
+            let turned_y = y * cos - x * sin;
+            let arm = new_x * link.a + z * link.d;
+            let spin = k.angular_velocity[i] + z * state.dq[i];
+            k.axis[i] = z;
+            k.axis_rate[i] = k.angular_velocity[i].cross(&z);
+            k.rotation[i + 1] = Matrix3::from_columns(&[
+                new_x,
+                turned_y * link.cos_alpha + z * link.sin_alpha,
+                z * link.cos_alpha - turned_y * link.sin_alpha,
+            ]);
+            k.origin[i + 1] = k.origin[i] + arm;
+            k.angular_velocity[i + 1] = spin;
+            k.origin_velocity[i + 1] = k.origin_velocity[i] + spin.cross(&arm);
+        }
+        k
+    }
+
+    /// Frame that carries the point; links beyond 7 count as 7.
+    #[inline(always)]
+    fn frame(link: usize) -> usize {
+        if link < FRAMES { link } else { DOF }
+    }
+
+    /// Position and velocity of a point.
+    #[must_use]
+    #[inline]
+    pub fn point(&self, point: &LinkPoint<T>) -> PointMotion<T> {
+        let frame = Self::frame(point.link);
+        let arm = self.rotation[frame] * point.offset;
+        PointMotion {
+            x: self.origin[frame] + arm,
+            dx: self.origin_velocity[frame] + self.angular_velocity[frame].cross(&arm),
+        }
+    }
+
+    /// J and dJ/dt of a point whose motion is `motion`: columns z x (x - o) and
+    /// dz x (x - o) + z x (dx - do) for the joints below its link, else zero.
+    #[must_use]
+    #[inline]
+    pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> PointJacobian<T> {
+        let mut rows = PointJacobian {
+            jacobian: [zeros(); 3],
+            jacobian_dot: [zeros(); 3],
+        };
+        for i in 0..DOF {
+            if i < link {
+                let lever = motion.x - self.origin[i];
+                let lever_rate = motion.dx - self.origin_velocity[i];
+                let column = self.axis[i].cross(&lever);
+                let column_rate = self.axis_rate[i].cross(&lever) + self.axis[i].cross(&lever_rate);
+                for axis in 0..3 {
+                    rows.jacobian[axis][i] = column[axis];
+                    rows.jacobian_dot[axis][i] = column_rate[axis];
+                }
+            }
+        }
+        rows
+    }
+}

@@ -1,0 +1,214 @@
+//! Small dense linear algebra with fixed trip counts: the Cholesky factor of
+//! the mass matrix and its triangular solves, and the largest eigenvalue of a
+//! symmetric matrix (construction only).
+
+use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::real::Real;
+
+/// A = L L^T with L lower triangular; A symmetric, positive definite, 7 x 7.
+#[derive(Clone, Copy, Debug)]
+pub struct Cholesky<T: Real> {
+    l: JointMatrix<T>,
+    inverse_diagonal: JointVector<T>,
+}
+
+impl<T: Real> Cholesky<T> {
+    /// Factors `a`; only its lower triangle is read.
+    ///
+    /// Never fails: a pivot below 1e-30 counts as 1e-30, so the factor of a
+    /// matrix that is not positive definite is finite but meaningless. The mass
+    /// matrix of a validated model is always positive definite;
+    /// [`Cholesky::checked`] is for matrices from outside.
+    #[must_use]
+    #[inline]
+    pub fn new(a: &JointMatrix<T>) -> Self {
+        let mut l = zeros();
+        let mut inverse_diagonal: JointVector<T> = zeros();
+        let floor = T::from_f64(1e-30);
+        for j in 0..DOF {
+            let mut column: JointVector<T> = zeros();
+            for i in j..DOF {
+                column[i] = a[(i, j)];
+            }
+            for k in 0..j {
+                let factor = l[(j, k)];
+                for i in j..DOF {
+                    column[i] -= l[(i, k)] * factor;
+                }
+            }
+            let root = column[j].larger(floor).square_root();
+            let inverse = T::ONE / root;
+            inverse_diagonal[j] = inverse;
+            l[(j, j)] = root;
+            for i in j + 1..DOF {
+                l[(i, j)] = column[i] * inverse;
+            }
+        }
+        Self {
+            l,
+            inverse_diagonal,
+        }
+    }
+
+    /// As [`Cholesky::new`], or the first index (0..7) whose pivot is not above
+    /// 1e-12 times the largest diagonal entry, with that pivot.
+    ///
+    /// # Errors
+    /// The matrix is not numerically positive definite.
+    pub fn checked(a: &JointMatrix<T>) -> Result<Self, (usize, f64)> {
+        let factor = Self::new(a);
+        let scale = (0..DOF).fold(T::ZERO, |largest, i| a[(i, i)].magnitude().larger(largest));
+        for j in 0..DOF {
+            let row_sum = (0..j).fold(T::ZERO, |sum, k| sum + factor.l[(j, k)] * factor.l[(j, k)]);
+            let pivot = a[(j, j)] - row_sum;
+            let definite = pivot > scale * T::from_f64(1e-12);
+            if !definite {
+                return Err((j, pivot.to_f64()));
+            }
+        }
+        Ok(factor)
+    }
+
+    /// The factor of the identity: whitening with it changes nothing.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self {
+            l: JointMatrix::identity(),
+            inverse_diagonal: JointVector::from([T::ONE; DOF]),
+        }
+    }
+
+    /// L, lower triangular, zeros above.
+    #[must_use]
+    pub fn factor(&self) -> &JointMatrix<T> {
+        &self.l
+    }
+
+    /// L^-1 b.
+    #[must_use]
+    #[inline]
+    pub fn solve_lower(&self, b: &JointVector<T>) -> JointVector<T> {
+        let mut x = *b;
+        for j in 0..DOF {
+            let value = x[j] * self.inverse_diagonal[j];
+            x[j] = value;
+            for i in j + 1..DOF {
+                x[i] -= self.l[(i, j)] * value;
+            }
+        }
+        x
+    }
+
+    /// L^-T b.
+    #[must_use]
+    #[inline]
+    pub fn solve_upper(&self, b: &JointVector<T>) -> JointVector<T> {
+        let mut x = *b;
+        for i in (0..DOF).rev() {
+            let mut value = x[i];
+            for j in i + 1..DOF {
+                value -= self.l[(j, i)] * x[j];
+            }
+            x[i] = value * self.inverse_diagonal[i];
+        }
+        x
+    }
+
+    /// L x.
+    #[must_use]
+    #[inline]
+    pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
+        let mut y: JointVector<T> = zeros();
+        for j in 0..DOF {
+            for i in j..DOF {
+                y[i] += self.l[(i, j)] * x[j];
+            }
+        }
+        y
+    }
+
+    /// L^T x.
+    #[must_use]
+    #[inline]
+    pub fn upper_times(&self, x: &JointVector<T>) -> JointVector<T> {
+        let mut y: JointVector<T> = zeros();
+        for i in 0..DOF {
+            for j in i..DOF {
+                y[i] += self.l[(j, i)] * x[j];
+            }
+        }
+        y
+    }
+
+    /// L^-1 B L^-T, for a symmetric B.
+    #[must_use]
+    pub fn whiten(&self, b: &JointMatrix<T>) -> JointMatrix<T> {
+        let mut half: JointMatrix<T> = zeros();
+        for j in 0..DOF {
+            half.set_column(j, &self.solve_lower(&b.column(j).into_owned()));
+        }
+        let half = half.transpose();
+        let mut whole: JointMatrix<T> = zeros();
+        for j in 0..DOF {
+            whole.set_column(j, &self.solve_lower(&half.column(j).into_owned()));
+        }
+        whole
+    }
+}
+
+/// Largest eigenvalue of a symmetric matrix and its eigenvector, by cyclic
+/// Jacobi rotations: twelve sweeps, which for 7 x 7 is far beyond the point
+/// where nothing changes any more. For construction, not for the cycle.
+#[must_use]
+pub fn largest_eigenpair<T: Real>(symmetric: &JointMatrix<T>) -> (T, JointVector<T>) {
+    const SWEEPS: usize = 12;
+    let mut a = *symmetric;
+    let mut vectors = JointMatrix::<T>::identity();
+    for _ in 0..SWEEPS {
+        for p in 0..DOF {
+            for q in p + 1..DOF {
+                rotate(&mut a, &mut vectors, p, q);
+            }
+        }
+    }
+    let mut best = 0;
+    for i in 1..DOF {
+        if a[(i, i)] > a[(best, best)] {
+            best = i;
+        }
+    }
+    let mut vector: JointVector<T> = zeros();
+    for i in 0..DOF {
+        vector[i] = vectors[(i, best)];
+    }
+    (a[(best, best)], vector)
+}
+
+/// The rotation in the plane (p, q) that makes a\[p, q\] zero.
+fn rotate<T: Real>(a: &mut JointMatrix<T>, vectors: &mut JointMatrix<T>, p: usize, q: usize) {
+    let off = a[(p, q)];
+    // Below this the rotation is the identity in either precision.
+    if off.magnitude() <= T::from_f64(1e-30) {
+        return;
+    }
+    let theta = (a[(q, q)] - a[(p, p)]) / (off + off);
+    let t =
+        T::ONE.with_sign_of(theta) / (theta.magnitude() + (theta * theta + T::ONE).square_root());
+    let c = T::ONE / (t * t + T::ONE).square_root();
+    let s = t * c;
+    for k in 0..DOF {
+        let (x, y) = (a[(k, p)], a[(k, q)]);
+        a[(k, p)] = x * c - y * s;
+        a[(k, q)] = x * s + y * c;
+    }
+    for k in 0..DOF {
+        let (x, y) = (a[(p, k)], a[(q, k)]);
+        a[(p, k)] = x * c - y * s;
+        a[(q, k)] = x * s + y * c;
+    }
+    for k in 0..DOF {
+        let (x, y) = (vectors[(k, p)], vectors[(k, q)]);
+        vectors[(k, p)] = x * c - y * s;
+        vectors[(k, q)] = x * s + y * c;
+    }
+}

@@ -1,0 +1,94 @@
+//! The generalised-momentum observer (30): external torque without torque
+//! sensors.
+//!
+//! With p = M dq and the equation of motion (6), dp/dt = u - tau_ext where
+//! u = tau + C^T dq - g is known. The residual r follows -tau_ext through a
+//! first-order lag with the rate K_I, joint by joint:
+//!
+//! ```text
+//! r_k = e^(-K_I h) r_(k-1) + (1 - e^(-K_I h)) ((p_k - p_(k-1)) / h - u_(k-1))
+//! ```
+//!
+//! This is exact for a d = dp/dt - u that is constant over a cycle, and stable
+//! for every K_I > 0; the explicit Euler form of (30) is stable only for
+//! K_I < 2 / h. It starts from the momentum at hand: (30) as printed assumes
+//! that the arm starts at rest.
+
+use crate::dynamics::Dynamics;
+use crate::joint::{JointState, JointVector, zeros};
+use crate::real::Real;
+
+/// What the observer remembers from the previous cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observer<T: Real> {
+    /// p_(k-1) \[Nms\].
+    pub momentum: JointVector<T>,
+    /// u_(k-1) = tau + C^T dq - g \[Nm\], tau as it was applied.
+    pub input: JointVector<T>,
+    /// r_(k-1) \[Nm\].
+    pub residual: JointVector<T>,
+    /// False until the first momentum is known.
+    pub started: bool,
+}
+
+impl<T: Real> Observer<T> {
+    /// Not started: the first update only takes the momentum.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            momentum: zeros(),
+            input: zeros(),
+            residual: zeros(),
+            started: false,
+        }
+    }
+
+    /// One step with `gain` K_I \[1/s\] per joint, the measured interval h \[s\] > 0
+    /// and the present momentum \[Nms\]. Returns r \[Nm\], which tends to -tau_ext:
+    /// positive where the environment pushes the joint forward.
+    #[inline]
+    pub fn update(
+        &mut self,
+        gain: &JointVector<T>,
+        interval_s: T,
+        momentum: &JointVector<T>,
+    ) -> JointVector<T> {
+        if self.started {
+            let rate = T::ONE / interval_s;
+            let innovation = (momentum - self.momentum) * rate - self.input;
+            let joints = self.residual.iter_mut().zip(gain.iter().zip(&innovation));
+            for (residual, (&gain, &innovation)) in joints {
+                let decay = (gain * interval_s).exp_negative();
+                *residual = decay * *residual + (T::ONE - decay) * innovation;
+            }
+        }
+        self.momentum = *momentum;
+        self.started = true;
+        self.residual
+    }
+
+    /// Keeps u of this cycle for the next [`Observer::update`]. `torque` \[Nm\] is the
+    /// one that reaches the joints, after limits.
+    #[inline]
+    pub fn apply(
+        &mut self,
+        dynamics: &Dynamics<T>,
+        state: &JointState<T>,
+        torque: &JointVector<T>,
+    ) {
+        self.input = torque + dynamics.coriolis_transpose_times(&state.dq) - dynamics.gravity;
+    }
+}
+
+impl<T: Real> Default for Observer<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// tau_ext of (6) \[Nm\] from the residual: the torque that the arm exerts on its
+/// environment. The one place where the sign changes, eq. (31).
+#[must_use]
+pub fn external_torque<T: Real>(residual: &JointVector<T>) -> JointVector<T> {
+    -residual
+}
