@@ -5,6 +5,7 @@ use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::kinematics::Kinematics;
 use controller_core::model::{ArmModel, LWR_IV};
 
+pub mod config;
 pub mod random;
 
 /// The arm under test.
@@ -15,7 +16,10 @@ pub fn lwr() -> ArmModel<f64> {
 
 /// Kinematics and dynamics of the core at one state.
 #[must_use]
-pub fn evaluate(model: &ArmModel<f64>, state: &JointState<f64>) -> (Kinematics<f64>, Dynamics<f64>) {
+pub fn evaluate(
+    model: &ArmModel<f64>,
+    state: &JointState<f64>,
+) -> (Kinematics<f64>, Dynamics<f64>) {
     let kinematics = Kinematics::new(model, state);
     let dynamics = Dynamics::new(model, &kinematics, state);
     (kinematics, dynamics)

@@ -15,7 +15,10 @@ const STATES: usize = 500;
 const STEP: f64 = 1e-5;
 
 fn moved(state: &JointState<f64>, direction: &JointVector<f64>, by: f64) -> JointState<f64> {
-    JointState { q: state.q + direction * by, dq: state.dq }
+    JointState {
+        q: state.q + direction * by,
+        dq: state.dq,
+    }
 }
 
 /// M from unit accelerations of the plant: ddq of a unit torque is a column of
@@ -25,9 +28,17 @@ fn mass_matrix_inverts_the_plants_response_to_unit_torques() {
     let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
     let mut states = States::new(1);
     for _ in 0..STATES {
-        let state = JointState { dq: JointVector::zeros(), ..states.state() };
+        let state = JointState {
+            dq: JointVector::zeros(),
+            ..states.state()
+        };
         let (_, dynamics) = evaluate(&model, &state);
-        let rest = plant.forward_dynamics(&state.q, &state.dq, &dynamics.gravity, &JointVector::zeros());
+        let rest = plant.forward_dynamics(
+            &state.q,
+            &state.dq,
+            &dynamics.gravity,
+            &JointVector::zeros(),
+        );
         assert!(rest.amax() < 1e-9, "gravity torque holds the plant: {rest}");
         for i in JOINTS {
             let torque = dynamics.gravity + dynamics.mass_matrix * unit(i);
@@ -44,8 +55,11 @@ fn mass_matrix_rate_is_coriolis_plus_its_transpose() {
     for _ in 0..STATES {
         let state = states.state();
         let (_, dynamics) = evaluate(&model, &state);
-        let [ahead, behind] = [STEP, -STEP]
-            .map(|step| evaluate(&model, &moved(&state, &state.dq, step)).1.mass_matrix);
+        let [ahead, behind] = [STEP, -STEP].map(|step| {
+            evaluate(&model, &moved(&state, &state.dq, step))
+                .1
+                .mass_matrix
+        });
         let rate = (ahead - behind) / (2.0 * STEP);
         let c = dynamics.coriolis_matrix;
         let sum = c + c.transpose();
@@ -66,13 +80,18 @@ fn coriolis_matrix_is_the_christoffel_one() {
         let (_, dynamics) = evaluate(&model, &state);
         let gradient: Vec<_> = JOINTS
             .map(|k| {
-                let [ahead, behind] = [STEP, -STEP]
-                    .map(|step| evaluate(&model, &moved(&state, &unit(k), step)).1.mass_matrix);
+                let [ahead, behind] = [STEP, -STEP].map(|step| {
+                    evaluate(&model, &moved(&state, &unit(k), step))
+                        .1
+                        .mass_matrix
+                });
                 (ahead - behind) / (2.0 * STEP)
             })
             .collect();
         let mut expected = dynamics.coriolis_matrix * 0.0;
-        for (i, j, k) in JOINTS.flat_map(|i| JOINTS.flat_map(move |j| JOINTS.map(move |k| (i, j, k)))) {
+        for (i, j, k) in
+            JOINTS.flat_map(|i| JOINTS.flat_map(move |j| JOINTS.map(move |k| (i, j, k))))
+        {
             expected[(i, j)] += 0.5
                 * (gradient[k][(i, j)] + gradient[j][(i, k)] - gradient[i][(j, k)])
                 * state.dq[k];
@@ -89,8 +108,8 @@ fn gravity_is_the_gradient_of_the_plants_potential_energy() {
         let state = states.state();
         let (_, dynamics) = evaluate(&model, &state);
         let gradient = JointVector::from_fn(|k, _| {
-            let [ahead, behind] = [STEP, -STEP]
-                .map(|step| plant.potential_energy(&(state.q + unit(k) * step)));
+            let [ahead, behind] =
+                [STEP, -STEP].map(|step| plant.potential_energy(&(state.q + unit(k) * step)));
             (ahead - behind) / (2.0 * STEP)
         });
         // Potential energies are tens of joules: rounding 1e-14 / 1e-5.
@@ -110,7 +129,11 @@ fn plant_follows_the_cores_equation_of_motion() {
         let (_, dynamics) = evaluate(&model, &state);
         let torque = dynamics.mass_matrix * wanted + dynamics.coriolis + dynamics.gravity;
         let ddq = plant.forward_dynamics(&state.q, &state.dq, &torque, &JointVector::zeros());
-        assert!(relative(&ddq, &wanted, 1.0) < 1e-8, "{}", relative(&ddq, &wanted, 1.0));
+        assert!(
+            relative(&ddq, &wanted, 1.0) < 1e-8,
+            "{}",
+            relative(&ddq, &wanted, 1.0)
+        );
     }
 }
 
