@@ -13,7 +13,18 @@ use core::fmt;
 use crate::joint::{DOF, JointVector, Matrix3, Vector3};
 use crate::real::Real;
 
-pub use lwr_iv::LWR_IV;
+pub use lwr_iv::{LWR_IV, LWR_IV_POINTS};
+
+/// A point of an arm with a name. Plain `f64` data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NamedPoint {
+    /// Its name in scenario files.
+    pub name: &'static str,
+    /// Link that carries it, 1..=7.
+    pub link: usize,
+    /// Position \[m\] in the DH frame of that link.
+    pub offset: [f64; 3],
+}
 
 /// Tables of one link and of the joint that moves it. Plain `f64` data.
 #[derive(Clone, Copy, Debug, PartialEq)]

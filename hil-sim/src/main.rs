@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! `hil-sim`: see the library of the same name.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hil_sim::cli::main()
+}

@@ -1,140 +1,27 @@
 //! The plant against golden data of an independent library, against closed
 //! forms, and against what a mechanical system must do.
 
-use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, Matrix3, Vector3};
-use controller_core::model::{ArmParameters, LWR_IV, LinkParameters};
+use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
+use controller_core::model::{ArmParameters, LWR_IV};
 use hil_sim::plant::{Plant, PlantKind, PlantModel, Rng, mismatched, noise};
-use serde::Deserialize;
-use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-#[derive(Deserialize)]
-struct Golden {
-    nominal: GoldenArm,
-    mismatched: GoldenArm,
-}
-
-#[derive(Deserialize)]
-struct GoldenArm {
-    arm: Tables,
-    states: Vec<GoldenState>,
-}
-
-#[derive(Deserialize)]
-struct Tables {
-    base_height: f64,
-    flange: f64,
-    gravity: [f64; 3],
-    links: [LinkTables; DOF],
-}
-
-#[derive(Deserialize)]
-struct LinkTables {
-    a: f64,
-    alpha: f64,
-    d: f64,
-    mass: f64,
-    com: [f64; 3],
-    inertia: [f64; 6],
-    position_limit: f64,
-    speed_limit: f64,
-    torque_limit: f64,
-}
-
-#[derive(Deserialize)]
-struct GoldenState {
-    q: [f64; DOF],
-    dq: [f64; DOF],
-    torque: [f64; DOF],
-    mass_matrix: [[f64; DOF]; DOF],
-    coriolis: [f64; DOF],
-    gravity: [f64; DOF],
-    ddq: [f64; DOF],
-    ddq_in: [f64; DOF],
-    rnea: [f64; DOF],
-    kinetic_energy: f64,
-    potential_energy: f64,
-    #[serde(default)]
-    points: BTreeMap<String, GoldenPoint>,
-}
-
-#[derive(Deserialize)]
-struct GoldenPoint {
-    position: [f64; 3],
-    jacobian: [[f64; DOF]; 3],
-}
-
-impl Tables {
-    fn parameters(&self) -> ArmParameters {
-        ArmParameters {
-            name: "golden",
-            base_height: self.base_height,
-            flange: self.flange,
-            gravity: self.gravity,
-            links: self.links.each_ref().map(|link| LinkParameters {
-                a: link.a,
-                alpha: link.alpha,
-                d: link.d,
-                mass: link.mass,
-                com: link.com,
-                inertia: link.inertia,
-                position_limit: link.position_limit,
-                speed_limit: link.speed_limit,
-                torque_limit: link.torque_limit,
-            }),
-        }
-    }
-}
-
-impl GoldenState {
-    fn state(&self) -> JointState<f64> {
-        JointState {
-            q: self.q.into(),
-            dq: self.dq.into(),
-        }
-    }
-}
-
-fn file(name: &str) -> String {
-    let path = format!("{}/golden/{name}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
-
-fn golden() -> Golden {
-    serde_json::from_str(&file("dynamics.json")).expect("layout of dynamics.json")
-}
+#[path = "../golden/reader.rs"]
+mod golden;
+use golden::{Golden, Tables, Worst, file};
 
 fn none() -> JointVector<f64> {
     JointVector::zeros()
 }
 
-/// Keeps the largest error seen, and says it when the test ends.
-struct Worst(&'static str, f64);
-
-impl Worst {
-    fn add(&mut self, error: f64) {
-        // A NaN must not hide behind max().
-        self.1 = if error <= self.1 { self.1 } else { error };
-    }
-
-    fn within(self, tolerance: f64) {
-        println!("{}: {:.1e} of {tolerance:.0e}", self.0, self.1);
-        assert!(
-            self.1 <= tolerance,
-            "{}: {:e} > {tolerance:e}",
-            self.0,
-            self.1
-        );
-    }
-}
-
 #[test]
 fn the_golden_tables_are_those_of_the_product() {
-    // The JSON reader rounds to within one unit, so the layout is read by it and
-    // the numbers, in the order of the file, by Rust's own exact parser.
+    // The JSON reader may round by a unit in the last place. So it checks the
+    // layout, and Rust's exact parser the numbers, in the order of the file.
     let text = file("arm.json");
     let tables: Tables = serde_json::from_str(&text).expect("layout of arm.json");
-    assert!((tables.links[6].mass - LWR_IV.links[6].mass).abs() < 1e-15);
+    let mass = tables.parameters().links[6].mass;
+    assert!((mass - LWR_IV.links[6].mass).abs() < 1e-15);
     let numbers: Vec<f64> = text
         .split(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
         .filter_map(|token| token.parse().ok())
@@ -152,25 +39,24 @@ fn the_golden_tables_are_those_of_the_product() {
 
 #[test]
 fn forward_dynamics_agrees_with_pinocchio() {
-    let golden = golden();
+    let golden = Golden::read();
     // Two ways to say how near. The forces left over are a matter of rounding
     // only: a hundred additions of terms of the size of the torques. The
     // accelerations are those forces through M^-1, with a condition number of
     // 1.6e4 (1e-16 * 1.6e4 * a few).
-    let mut force = Worst("forces left over / largest force", 0.0);
-    let mut acceleration = Worst("ddq / largest ddq", 0.0);
-    let mut inverse = Worst("ddq from inverse dynamics [rad/s2]", 0.0);
+    let mut force = Worst::new("forces left over / largest force");
+    let mut acceleration = Worst::new("ddq / largest ddq");
+    let mut inverse = Worst::new("ddq from inverse dynamics [rad/s2]");
     for arm in [&golden.nominal, &golden.mismatched] {
         assert_eq!(arm.states.len(), 200);
         let model = PlantModel::new(&arm.arm.parameters());
         for golden in &arm.states {
             let JointState { q, dq } = golden.state();
-            let m = JointMatrix::from_fn(|i, j| golden.mass_matrix[i][j]);
             let bias = JointVector::from(golden.coriolis) + JointVector::from(golden.gravity);
             let torque = JointVector::from(golden.torque);
             let ddq = model.forward_dynamics(&q, &dq, &torque, &none());
             let scale = torque.amax() + bias.amax() + 1.0;
-            force.add((m * ddq + bias - torque).amax() / scale);
+            force.add((golden.mass_matrix() * ddq + bias - torque).amax() / scale);
             let expected = JointVector::from(golden.ddq);
             acceleration.add((ddq - expected).amax() / (1.0 + expected.amax()));
 
@@ -187,12 +73,12 @@ fn forward_dynamics_agrees_with_pinocchio() {
 
 #[test]
 fn points_and_jacobians_agree_with_pinocchio() {
-    let golden = golden();
+    let golden = Golden::read();
     let model = PlantModel::new(&LWR_IV);
     // Lengths of 1 m through seven rotations: some units in the last place.
-    let mut position = Worst("point position [m]", 0.0);
-    let mut jacobian = Worst("point Jacobian [m]", 0.0);
-    let mut speed = Worst("point velocity [m/s]", 0.0);
+    let mut position = Worst::new("point position [m]");
+    let mut jacobian = Worst::new("point Jacobian [m]");
+    let mut speed = Worst::new("point velocity [m/s]");
     for golden in &golden.nominal.states {
         let state = golden.state();
         for (name, link, offset) in [
@@ -222,10 +108,10 @@ fn points_and_jacobians_agree_with_pinocchio() {
 
 #[test]
 fn energies_agree_with_pinocchio() {
-    let golden = golden();
+    let golden = Golden::read();
     // Sums of 20 J (kinetic) and 150 J (potential).
-    let mut kinetic = Worst("kinetic energy [J]", 0.0);
-    let mut potential = Worst("potential energy [J]", 0.0);
+    let mut kinetic = Worst::new("kinetic energy [J]");
+    let mut potential = Worst::new("potential energy [J]");
     for arm in [&golden.nominal, &golden.mismatched] {
         let model = PlantModel::new(&arm.arm.parameters());
         for golden in &arm.states {
@@ -285,7 +171,7 @@ fn energy_changes_by_the_work_done() {
     }
     println!("turnover {turnover:.1} J, up to {fastest:.1} rad/s");
     assert!(turnover > 50.0 && fastest > 1.0);
-    let mut error = Worst("work of torque and contact [J]", 0.0);
+    let mut error = Worst::new("work of torque and contact [J]");
     error.add((energy(&plant) - start - work).abs());
     error.within(1e-10);
 }
@@ -301,7 +187,7 @@ fn energy_stays_without_torque() {
             model.kinetic_energy(plant.state()) + model.potential_energy(&plant.state().q)
         };
         let start = energy(&plant);
-        let mut error = Worst("energy of the limp arm [J]", 0.0);
+        let mut error = Worst::new("energy of the limp arm [J]");
         let mut kinetic = 0.0f64;
         for n in 0..(10.0 / cycle) as u32 {
             plant.advance(f64::from(n) * cycle, &none(), |_, _, _| none());
@@ -355,15 +241,15 @@ fn one_swinging_joint_is_the_closed_form_pendulum() {
     let acceleration =
         |angle: f64, speed: f64| model.forward_dynamics(&at(angle), &at(speed), &none(), &held)[1];
     println!("inertia {inertia} moment {moment}");
-    let mut error = Worst("pendulum acceleration [rad/s2]", 0.0);
+    let mut error = Worst::new("pendulum acceleration [rad/s2]");
     for n in -1000..=1000 {
         let angle = f64::from(n) * TAU / 1000.0;
         error.add((acceleration(angle, 0.7) - moment / inertia * libm::sin(angle)).abs());
     }
-    error.within(1e-9);
+    error.within(1e-10);
 
     // Large swings: period 2 pi sqrt(I / mgl) / agm(1, cos(amplitude / 2)).
-    let mut error = Worst("pendulum period, relative", 0.0);
+    let mut error = Worst::new("pendulum period, relative");
     for amplitude in [0.2, 1.0, 2.0, 2.9] {
         let (mut a, mut b) = (1.0, libm::cos(amplitude / 2.0));
         for _ in 0..8 {
@@ -399,7 +285,7 @@ fn one_swinging_joint_is_the_closed_form_pendulum() {
         }
         error.add((4.0 * (t + rest) / expected - 1.0).abs());
     }
-    error.within(1e-9);
+    error.within(1e-10);
 }
 
 #[test]
@@ -466,31 +352,11 @@ fn friction_brings_the_hanging_arm_to_rest() {
 fn dynamics_depend_on_nothing_but_their_arguments() {
     let model = PlantModel::new(&LWR_IV);
     let twin = PlantModel::new(&LWR_IV);
-    for golden in golden().nominal.states {
+    for golden in Golden::read().nominal.states {
         let JointState { q, dq } = golden.state();
         let torque = golden.torque.into();
         let first = model.forward_dynamics(&q, &dq, &torque, &none());
         assert_eq!(first, model.forward_dynamics(&q, &dq, &torque, &none()));
         assert_eq!(first, twin.forward_dynamics(&q, &dq, &torque, &none()));
     }
-}
-
-/// `cargo test --release -p stratum-tests --test plant -- --ignored --nocapture`
-#[test]
-#[ignore = "a measurement of this machine"]
-fn time_of_one_evaluation() {
-    const COUNT: u32 = 160_000;
-    let model = PlantModel::new(&LWR_IV);
-    let mut q = JointVector::from(POSTURE);
-    let begin = std::time::Instant::now();
-    for _ in 0..COUNT {
-        let ddq = model.forward_dynamics(&q, &q, &q, &none());
-        q += ddq * 1e-12;
-    }
-    let elapsed = begin.elapsed();
-    println!(
-        "{:.0} ns each ({q:?})",
-        elapsed.as_nanos() as f64 / f64::from(COUNT)
-    );
-    assert!(elapsed.as_secs_f64() < 0.4);
 }

@@ -1,1 +1,225 @@
-//! x
+//! The plant: the simulated arm that the controller acts on.
+//!
+//! It is built from the same tables as the controller's model and shares no
+//! method with it: the controller adds up composite moments in base axes, the
+//! plant runs the articulated-body algorithm in link axes ([`model`]). An error
+//! in either shows as a disagreement instead of cancelling.
+//!
+//! Two kinds. `ideal` is the exact model, integrated to rounding; it shows what
+//! the control law does. `realistic` adds what a real arm adds: friction, wrong
+//! masses, torque noise, encoders, a differentiated velocity.
+//!
+//! Everything is `f64` and uses no elementary function of the platform, so a
+//! seed gives the same bytes on every machine.
+
+mod aba;
+pub mod friction;
+mod integrate;
+pub mod mismatch;
+pub mod model;
+pub mod noise;
+pub mod sensor;
+
+use controller_core::joint::{JointState, JointVector};
+use controller_core::model::ArmParameters;
+
+pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
+pub use mismatch::mismatched;
+pub use model::PlantModel;
+pub use noise::Rng;
+pub use sensor::Sensor;
+
+/// Standard deviation of the torque noise \[Nm\] per joint, of one draw per
+/// cycle that holds for the cycle.
+pub const TORQUE_NOISE: [f64; 7] = [0.1, 0.1, 0.1, 0.1, 0.05, 0.03, 0.01];
+
+/// How much of a real arm the plant imitates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlantKind {
+    /// Exact model, no friction, no noise, true state measured.
+    Ideal,
+    /// Friction, mismatched masses, torque noise, encoders.
+    Realistic,
+}
+
+impl PlantKind {
+    /// Name as on the command line and in scenario files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ideal => "ideal",
+            Self::Realistic => "realistic",
+        }
+    }
+}
+
+/// A simulated arm and its state.
+#[derive(Clone, Debug)]
+pub struct Plant {
+    model: PlantModel,
+    state: JointState<f64>,
+    cycle_s: f64,
+    imperfections: Option<Imperfections>,
+}
+
+/// What the realistic plant has besides a model and a state.
+#[derive(Clone, Debug)]
+struct Imperfections {
+    sensor: Sensor,
+    torque_noise: Rng,
+}
+
+impl Plant {
+    /// An arm at rest at `q0` \[rad\], to be advanced by cycles of `cycle_s`
+    /// \[s\] (above 0). `parameters` are the tables the controller believes;
+    /// the realistic plant departs from them as `seed` says. The ideal plant
+    /// does not read `seed`.
+    #[must_use]
+    pub fn new(
+        kind: PlantKind,
+        parameters: &ArmParameters,
+        q0: JointVector<f64>,
+        cycle_s: f64,
+        seed: u64,
+    ) -> Self {
+        let (model, imperfections) = match kind {
+            PlantKind::Ideal => (PlantModel::new(parameters), None),
+            PlantKind::Realistic => {
+                let mut rng = Rng::new(seed, noise::stream::MISMATCH);
+                let imperfections = Imperfections {
+                    sensor: Sensor::new(&q0, cycle_s),
+                    torque_noise: Rng::new(seed, noise::stream::TORQUE),
+                };
+                let parameters = mismatched(parameters, &mut rng);
+                (PlantModel::new(&parameters), Some(imperfections))
+            }
+        };
+        Self {
+            model,
+            state: JointState {
+                q: q0,
+                dq: JointVector::zeros(),
+            },
+            cycle_s,
+            imperfections,
+        }
+    }
+
+    /// The model that moves: with the mismatch, where there is one.
+    #[must_use]
+    pub fn model(&self) -> &PlantModel {
+        &self.model
+    }
+
+    /// The true state.
+    #[must_use]
+    pub fn state(&self) -> &JointState<f64> {
+        &self.state
+    }
+
+    /// What the arm reports at this cycle instant: the true state (ideal), or
+    /// encoder positions and their filtered difference (realistic). Call once
+    /// per cycle, before [`Plant::advance`]: the velocity filter counts calls.
+    pub fn measure(&mut self) -> JointState<f64> {
+        match &mut self.imperfections {
+            None => self.state,
+            Some(imperfections) => imperfections.sensor.measure(&self.state.q),
+        }
+    }
+
+    /// Moves on by one cycle from time `t_s` \[s\] with the motor torque
+    /// `torque` \[Nm\], positive along +q, held constant.
+    ///
+    /// `external(t, model, state)` gives the joint torque +J^T F \[Nm\] of
+    /// contact forces F on the arm (that is, -tau_ext). The ideal plant asks
+    /// for it at the four stages of every substep, the realistic one at the
+    /// start of every substep.
+    pub fn advance(
+        &mut self,
+        t_s: f64,
+        torque: &JointVector<f64>,
+        mut external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
+    ) {
+        let model = &self.model;
+        let mut contact = |t: f64, state: &JointState<f64>| external(t, model, state);
+        self.state = match &mut self.imperfections {
+            None => {
+                let substeps = integrate::ideal_substeps(self.cycle_s);
+                integrate::ideal(
+                    model,
+                    &self.state,
+                    t_s,
+                    self.cycle_s,
+                    substeps,
+                    torque,
+                    &mut contact,
+                )
+            }
+            Some(imperfections) => {
+                let rng = &mut imperfections.torque_noise;
+                let noisy =
+                    JointVector::from_fn(|i, _| torque[i] + TORQUE_NOISE[i] * rng.gaussian());
+                let substeps = integrate::realistic_substeps(self.cycle_s);
+                integrate::realistic(
+                    model,
+                    &self.state,
+                    t_s,
+                    self.cycle_s,
+                    substeps,
+                    &noisy,
+                    &mut contact,
+                )
+            }
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::model::LWR_IV;
+
+    #[test]
+    fn the_ideal_plant_measures_its_true_state_and_ignores_the_seed() {
+        let q0 = JointVector::from([0.1, 0.5, 0.0, -1.2, 0.3, 1.0, 0.0]);
+        let run = |seed| {
+            let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, q0, 0.002, seed);
+            for cycle in 0..50 {
+                let t = f64::from(cycle) * 0.002;
+                plant.advance(t, &JointVector::zeros(), |_, _, _| JointVector::zeros());
+            }
+            assert_eq!(plant.measure(), *plant.state());
+            *plant.state()
+        };
+        assert_eq!(run(1), run(2));
+    }
+
+    #[test]
+    fn contact_times_cover_the_cycle() {
+        for (kind, calls) in [(PlantKind::Ideal, 16), (PlantKind::Realistic, 8)] {
+            let mut plant = Plant::new(kind, &LWR_IV, JointVector::zeros(), 0.002, 1);
+            let mut times = Vec::new();
+            plant.advance(3.0, &JointVector::zeros(), |t, _, _| {
+                times.push(t);
+                JointVector::zeros()
+            });
+            assert_eq!(times.len(), calls);
+            assert_eq!(times.first(), Some(&3.0));
+            assert!(times.iter().all(|t| (3.0..=3.002 + 1e-12).contains(t)));
+        }
+    }
+
+    #[test]
+    fn a_contact_acts_like_a_motor_torque() {
+        let push = JointVector::from([1.0, -2.0, 0.5, 1.5, 0.1, -0.1, 0.01]);
+        let q0 = JointVector::from([0.1, 0.5, 0.0, -1.2, 0.3, 1.0, 0.0]);
+        for kind in [PlantKind::Ideal, PlantKind::Realistic] {
+            let mut by_motor = Plant::new(kind, &LWR_IV, q0, 0.002, 5);
+            let mut by_contact = by_motor.clone();
+            by_motor.advance(0.0, &push, |_, _, _| JointVector::zeros());
+            by_contact.advance(0.0, &JointVector::zeros(), |_, _, _| push);
+            let difference = by_motor.state().dq - by_contact.state().dq;
+            assert!(difference.amax() < 1e-11, "{difference}");
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! `hil-sim run` and the comparison that runs without arguments.
+
+use std::fmt::Display;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use crate::controllers::ControllerKind;
+use crate::experiment::Experiment;
+use crate::invalid::{Invalid, in_range, positive};
+use crate::names::{Named, NullStiffness, Switch};
+use crate::output::{self, Draft};
+use crate::plant::PlantKind;
+use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use crate::summary::{Summary, Verdict};
+
+/// Options of `run`. Choices are plain text here, so that an unknown one gets
+/// the same one-line answer as everything else.
+#[derive(Clone, Debug, Args)]
+pub struct RunOptions {
+    /// Built-in scenario (two-level), or a TOML file
+    scenario: String,
+    /// ideal, realistic
+    #[arg(long, default_value = "realistic")]
+    plant: String,
+    /// on, off
+    #[arg(long, default_value = "on")]
+    contacts: String,
+    /// hierarchical, no-observer, acceleration-level
+    #[arg(long, default_value = "hierarchical")]
+    controller: String,
+    /// Null-space stiffness: low (x 0.2), normal, high (x 4)
+    #[arg(long, default_value = "normal")]
+    null_stiffness: String,
+    /// Seed of mismatch and noise
+    #[arg(long, default_value_t = 1, value_parser = seed)]
+    seed: u64,
+    /// Length in s, up to 3600 [default: the scenario's]
+    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    duration: Option<f64>,
+    /// Control cycle in ms, 0.1 to 20 [default: the scenario's]
+    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    cycle_ms: Option<f64>,
+    /// Output folder [default: out/SCENARIO]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| format!("whole numbers 0 to {}", u64::MAX))
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "a number".to_string())
+}
+
+impl RunOptions {
+    /// Runs one experiment, prints its row, gives its exit code.
+    ///
+    /// # Errors
+    /// Whatever was given that cannot be used.
+    pub fn run(self) -> Result<u8, Invalid> {
+        let experiment = self.experiment()?;
+        let out = self
+            .out
+            .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
+        let summary = execute(&experiment, &out)?;
+        let mut text = heading(&experiment);
+        text += &table(&[&summary]);
+        text += &footer(&summary, &out);
+        super::print(&text)?;
+        Ok(summary.verdict.exit_code())
+    }
+
+    fn experiment(&self) -> Result<Experiment, Invalid> {
+        let mut scenario = Scenario::find(&self.scenario)?;
+        if let Some(duration) = self.duration {
+            scenario.duration_s = positive("--duration", duration, DURATION_MAX_S)?;
+        }
+        if let Some(cycle) = self.cycle_ms {
+            let [min, max] = CYCLE_RANGE_MS;
+            scenario.cycle_ms = in_range("--cycle-ms", cycle, min, max)?;
+        }
+        let option = |name: &'static str| move |error: Invalid| error.within(name);
+        Ok(Experiment {
+            scenario,
+            plant: PlantKind::from_name(&self.plant).map_err(option("--plant"))?,
+            contacts: Switch::from_name(&self.contacts)
+                .map_err(option("--contacts"))?
+                .0,
+            controller: ControllerKind::from_name(&self.controller)
+                .map_err(option("--controller"))?,
+            null_stiffness: NullStiffness::from_name(&self.null_stiffness)
+                .map_err(option("--null-stiffness"))?,
+            seed: self.seed,
+        })
+    }
+}
+
+/// The two-level experiment with every controller, as `cargo run` does it. The
+/// product's files go to out/two-level, those of the others to folders inside.
+///
+/// # Errors
+/// The output folder cannot be written.
+pub fn comparison() -> Result<u8, Invalid> {
+    let out = Path::new("out").join("two-level");
+    let product = Experiment {
+        scenario: Scenario::find("two-level")?,
+        plant: PlantKind::Realistic,
+        contacts: true,
+        controller: ControllerKind::Hierarchical,
+        null_stiffness: NullStiffness::Normal,
+        seed: 1,
+    };
+    let summary = execute(&product, &out)?;
+    let mut rows = vec![summary.clone()];
+    for controller in [
+        ControllerKind::NoObserver,
+        ControllerKind::AccelerationLevel,
+    ] {
+        let other = Experiment {
+            controller,
+            ..product.clone()
+        };
+        rows.push(execute(&other, &out.join(controller.name()))?);
+    }
+    let mut text = heading(&product);
+    text += &table(&rows.iter().collect::<Vec<_>>());
+    text += &footer(&summary, &out);
+    text += "Only hierarchical has to pass: the others are there for comparison.\n";
+    super::print(&text)?;
+    Ok(summary.verdict.exit_code())
+}
+
+/// Runs an experiment and writes its files.
+fn execute(experiment: &Experiment, out: &Path) -> Result<Summary, Invalid> {
+    let controller = experiment.controller()?;
+    warn_of_damping(experiment, &controller);
+    output::prepare(out)?;
+    let trace = Draft::create(out, "trace.csv")?;
+    let mut file = Draft::create(out, "summary.json")?;
+
+    let mut progress = Progress::new(experiment.controller.name());
+    let written = experiment.run(&controller, trace, |share| progress.show(share));
+    progress.clear();
+
+    let failed = |error: io::Error| Invalid::line(error).within(out.display());
+    let (summary, trace) = written.map_err(failed)?;
+    let json = serde_json::to_string_pretty(&summary).map_err(Invalid::line)?;
+    writeln!(file, "{json}").map_err(failed)?;
+    trace.commit().map_err(failed)?;
+    file.commit().map_err(failed)?;
+    Ok(summary)
+}
+
+/// A damping above half its bound works, but says so.
+fn warn_of_damping(
+    experiment: &Experiment,
+    controller: &controller_core::controller::Controller<f64>,
+) {
+    let bound = experiment.scenario.controller_config().damping_bound();
+    let mode = controller.fastest_mode();
+    let value = mode.rate * experiment.scenario.cycle_s();
+    if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {
+        eprintln!(
+            "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
+             (joint {}, stretched postures)",
+            mode.joint
+        );
+    }
+}
+
+fn heading(experiment: &Experiment) -> String {
+    let scenario = &experiment.scenario;
+    format!(
+        "{}: {} plant, contacts {}, seed {}, {} s in cycles of {} ms\n\n",
+        scenario.name,
+        Named::name(experiment.plant),
+        Switch(experiment.contacts).name(),
+        experiment.seed,
+        scenario.duration_s,
+        scenario.cycle_ms,
+    )
+}
+
+fn footer(summary: &Summary, out: &Path) -> String {
+    let reason = summary
+        .reason
+        .as_ref()
+        .map(|reason| format!("{reason}\n"))
+        .unwrap_or_default();
+    format!(
+        "\n{reason}summary.json and trace.csv are in {}\n",
+        out.display()
+    )
+}
+
+/// One row per run and level.
+fn table(runs: &[&Summary]) -> String {
+    let mut text = format!(
+        "{:<20} {:<14} {:>9} {:>9} {:>11} {:>12}  {}\n",
+        "controller", "level", "rms mm", "max mm", "plateau mm", "r error Nm", "verdict"
+    );
+    for run in runs {
+        for (number, level) in (1..).zip(&run.levels) {
+            let first = number == 1;
+            let shown = |show: bool, value: &str| {
+                if show {
+                    value.to_string()
+                } else {
+                    String::new()
+                }
+            };
+            text += &format!(
+                "{:<20} {:<14} {:>9} {:>9} {:>11} {:>12}  {}\n",
+                shown(first, run.controller),
+                format!("{number} {}", level.name),
+                figure(level.rms_mm),
+                figure(level.max_mm),
+                figure(level.worst_plateau_mm()),
+                shown(first, &figure(run.residual.rms_error_nm)),
+                shown(first, run.verdict.name()),
+            );
+        }
+    }
+    text
+}
+
+fn figure(value: Option<f64>) -> String {
+    fn shown(value: impl Display) -> String {
+        value.to_string()
+    }
+    match value {
+        None => shown("-"),
+        Some(value) if value < 0.01 => shown(format_args!("{value:.5}")),
+        Some(value) => shown(format_args!("{value:.3}")),
+    }
+}
+
+/// Share done, on a terminal, once a run takes longer than a second.
+struct Progress {
+    label: &'static str,
+    start: Instant,
+    shown: bool,
+}
+
+impl Progress {
+    fn new(label: &'static str) -> Self {
+        Self {
+            label,
+            start: Instant::now(),
+            shown: false,
+        }
+    }
+
+    fn show(&mut self, share: f64) {
+        if self.start.elapsed() > Duration::from_secs(1) && io::stderr().is_terminal() {
+            self.shown = true;
+            eprint!("\r{}: {:3.0} %", self.label, share * 100.0);
+        }
+    }
+
+    fn clear(&self) {
+        if self.shown {
+            eprint!("\r{:40}\r", "");
+        }
+    }
+}
+
+impl Verdict {
+    /// Whether the run passed.
+    #[must_use]
+    pub fn passed(self) -> bool {
+        self == Self::Pass
+    }
+}

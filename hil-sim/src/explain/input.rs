@@ -1,0 +1,259 @@
+//! The state to explain, as JSON.
+
+use controller_core::joint::{DOF, JointState, Vector3};
+use controller_core::model::{ArmParameters, LWR_IV};
+use controller_core::task::{Axes, MAX_ROWS, Task, TaskReference};
+use serde::Deserialize;
+
+use crate::controllers::ControllerKind;
+use crate::invalid::{Invalid, in_range};
+use crate::names::Named;
+use crate::scenario::PointSpec;
+
+/// One control cycle. SI units, base-plate frame.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Input {
+    /// Name of the arm.
+    pub robot: String,
+    /// q \[rad\].
+    pub q: [f64; DOF],
+    /// dq \[rad/s\].
+    pub dq: [f64; DOF],
+    /// r \[Nm\]; not read where `observer` is given.
+    #[serde(default)]
+    pub residual: [f64; DOF],
+    /// Task levels, highest priority first.
+    pub levels: Vec<Level>,
+    /// Null-space compliance.
+    pub null_space: NullSpace,
+    /// Law; hierarchical unless given.
+    #[serde(default)]
+    pub controller: Option<String>,
+    /// Asks for an observer step before the law.
+    #[serde(default)]
+    pub observer: Option<ObserverStep>,
+}
+
+/// A task level: desired motion and diagonal gains, one entry per axis.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Level {
+    /// Controlled point.
+    pub point: PointSpec,
+    /// Controlled axes, such as "xyz".
+    pub axes: String,
+    /// x_d \[m\].
+    pub x: Vec<f64>,
+    /// dx_d \[m/s\].
+    pub dx: Vec<f64>,
+    /// ddx_d \[m/s2\].
+    pub ddx: Vec<f64>,
+    /// K_p \[1/s2\].
+    pub kp: Vec<f64>,
+    /// K_d \[1/s\].
+    pub kd: Vec<f64>,
+}
+
+/// Null-space compliance, diagonal.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NullSpace {
+    /// q_d \[rad\].
+    pub q_d: [f64; DOF],
+    /// K_q \[Nm/rad\].
+    pub stiffness: [f64; DOF],
+    /// D \[Nms/rad\].
+    pub damping: [f64; DOF],
+    /// K of (14) \[1/s\], for the acceleration-level controllers.
+    #[serde(default = "default_rate_gain")]
+    pub rate_gain: [f64; DOF],
+}
+
+fn default_rate_gain() -> [f64; DOF] {
+    [10.0; DOF]
+}
+
+/// What the observer remembers of the previous cycle.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObserverStep {
+    /// p \[Nms\].
+    pub momentum_prev: [f64; DOF],
+    /// u = tau + C^T dq - g \[Nm\].
+    pub input_prev: [f64; DOF],
+    /// r \[Nm\].
+    pub residual_prev: [f64; DOF],
+    /// K_I \[1/s\].
+    pub gain: [f64; DOF],
+    /// Interval \[s\].
+    pub h: f64,
+}
+
+impl Input {
+    /// Reads and checks a state.
+    ///
+    /// # Errors
+    /// The first field that cannot be used, by its path.
+    pub fn parse(text: &str) -> Result<Self, Invalid> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let input: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+            let path = error.path().to_string();
+            let message = error.into_inner();
+            if path == "." {
+                Invalid::line(message)
+            } else {
+                Invalid::line(message).within(path)
+            }
+        })?;
+        deserializer
+            .end()
+            .map_err(|error| Invalid::line(error).within("after the state"))?;
+        input.validate()?;
+        Ok(input)
+    }
+
+    fn validate(&self) -> Result<(), Invalid> {
+        if self.robot != LWR_IV.name {
+            return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
+        }
+        for (joint, (&q, link)) in (1..).zip(self.q.iter().zip(&LWR_IV.links)) {
+            let limit = link.position_limit;
+            in_range(format_args!("q of joint {joint}"), q, -limit, limit)?;
+        }
+        finite("dq", &self.dq)?;
+        finite("residual", &self.residual)?;
+        for (name, values) in [
+            ("null_space.q_d", &self.null_space.q_d),
+            ("null_space.stiffness", &self.null_space.stiffness),
+            ("null_space.damping", &self.null_space.damping),
+            ("null_space.rate_gain", &self.null_space.rate_gain),
+        ] {
+            finite(name, values)?;
+        }
+        if let Some(name) = &self.controller {
+            ControllerKind::from_name(name)?;
+        }
+        if self.levels.is_empty() {
+            return Err(Invalid::new("levels", "none", "1 to 7 levels"));
+        }
+        let mut rows = 0;
+        for (index, level) in self.levels.iter().enumerate() {
+            rows += level
+                .validate()
+                .map_err(|error| error.within(format_args!("levels[{index}]")))?;
+        }
+        if rows > MAX_ROWS {
+            return Err(Invalid::new(
+                "levels",
+                format_args!("{rows} rows together"),
+                "1 to 7",
+            ));
+        }
+        if let Some(observer) = &self.observer {
+            finite("observer.momentum_prev", &observer.momentum_prev)?;
+            finite("observer.input_prev", &observer.input_prev)?;
+            finite("observer.residual_prev", &observer.residual_prev)?;
+            for gain in observer.gain {
+                in_range("observer.gain", gain, 0.0, 1e9)?;
+            }
+            crate::invalid::positive("observer.h", observer.h, 10.0)?;
+        }
+        Ok(())
+    }
+
+    /// Tables of the arm.
+    #[must_use]
+    pub fn arm(&self) -> &'static ArmParameters {
+        &LWR_IV
+    }
+
+    /// The joint state.
+    #[must_use]
+    pub fn state(&self) -> JointState<f64> {
+        JointState {
+            q: self.q.into(),
+            dq: self.dq.into(),
+        }
+    }
+
+    /// The law.
+    #[must_use]
+    pub fn controller(&self) -> ControllerKind {
+        let name = self.controller.as_deref().unwrap_or("hierarchical");
+        ControllerKind::from_name(name).unwrap_or(ControllerKind::Hierarchical)
+    }
+
+    /// The core's tasks and their references.
+    #[must_use]
+    pub fn tasks(&self) -> (Vec<Task<f64>>, Vec<TaskReference<f64>>) {
+        self.levels.iter().map(Level::task).unzip()
+    }
+}
+
+impl Level {
+    /// Checks point, axes and shapes; gives the number of rows.
+    fn validate(&self) -> Result<usize, Invalid> {
+        self.point.validate()?;
+        let Some(axes) = Axes::from_name(&self.axes) else {
+            return Err(Invalid::new(
+                "axes",
+                format_args!("'{}'", self.axes),
+                "letters of xyz in this order, such as xyz, xy, z",
+            ));
+        };
+        let rows = axes.count();
+        for (name, values) in [
+            ("x", &self.x),
+            ("dx", &self.dx),
+            ("ddx", &self.ddx),
+            ("kp", &self.kp),
+            ("kd", &self.kd),
+        ] {
+            if values.len() != rows {
+                let allowed = format!("{rows} for axes \"{}\"", self.axes);
+                return Err(Invalid::new(
+                    name,
+                    format_args!("{} values", values.len()),
+                    allowed,
+                ));
+            }
+            finite(name, values)?;
+        }
+        Ok(rows)
+    }
+
+    fn task(&self) -> (Task<f64>, TaskReference<f64>) {
+        let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
+        let spread = |values: &[f64]| {
+            let mut values = values.iter();
+            axes.xyz.map(|on| {
+                if on {
+                    *values.next().unwrap_or(&0.0)
+                } else {
+                    0.0
+                }
+            })
+        };
+        let task = Task::diagonal(
+            self.point.resolve(),
+            axes,
+            spread(&self.kp),
+            spread(&self.kd),
+        );
+        let vector = |values: &[f64]| Vector3::from(spread(values));
+        let reference = TaskReference {
+            x: vector(&self.x),
+            dx: vector(&self.dx),
+            ddx: vector(&self.ddx),
+        };
+        (task, reference)
+    }
+}
+
+fn finite(name: &str, values: &[f64]) -> Result<(), Invalid> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(Invalid::new(name, value, "finite numbers")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,123 @@
+//! Everything the law computed, as JSON.
+
+use controller_core::joint::{DOF, JointMatrix, JointVector};
+use controller_core::law::{Cycle, TorqueDemand};
+use controller_core::limits::TorqueCommand;
+use controller_core::task::Task;
+use serde::Serialize;
+
+/// A matrix as an array of rows.
+type Rows = Vec<Vec<f64>>;
+
+/// Every quantity of one cycle. SI units, base-plate frame.
+#[derive(Clone, Debug, Serialize)]
+#[expect(
+    missing_docs,
+    reason = "the fields bear the names of the glossary, docs/notation.md"
+)]
+pub struct Output {
+    pub mass_matrix: Rows,
+    pub coriolis_matrix: Rows,
+    pub coriolis: Vec<f64>,
+    pub gravity: Vec<f64>,
+    pub levels: Vec<LevelOutput>,
+    pub null_space: NullSpaceOutput,
+    pub conditioning: Vec<f64>,
+    pub residual: Vec<f64>,
+    pub residual_compensation: Vec<f64>,
+    pub torque_demand: Vec<f64>,
+    pub torque: Vec<f64>,
+}
+
+/// One level.
+#[derive(Clone, Debug, Serialize)]
+pub struct LevelOutput {
+    pub x: Vec<f64>,
+    pub jacobian: Rows,
+    pub jacobian_dot: Rows,
+    pub jacobian_dot_dq: Vec<f64>,
+    pub jbar: Rows,
+    pub jbar_pinv: Rows,
+    pub lambda: Rows,
+    pub command: Vec<f64>,
+}
+
+/// What the levels leave free.
+#[derive(Clone, Debug, Serialize)]
+pub struct NullSpaceOutput {
+    pub projector: Rows,
+    pub basis: Rows,
+    pub velocity: Vec<f64>,
+}
+
+impl Output {
+    /// Collects the quantities.
+    #[must_use]
+    pub fn new(
+        cycle: &Cycle<'_, f64>,
+        tasks: &[Task<f64>],
+        residual_compensation: JointVector<f64>,
+        demand: &TorqueDemand<f64>,
+        limited: &TorqueCommand<f64>,
+    ) -> Self {
+        let (dynamics, hierarchy) = (cycle.dynamics, cycle.hierarchy);
+        let cholesky = &dynamics.cholesky;
+        let levels = (0..)
+            .zip(tasks)
+            .map(|(level, task)| LevelOutput::new(cycle, level, task));
+        Self {
+            mass_matrix: square(&dynamics.mass_matrix),
+            coriolis_matrix: square(&dynamics.coriolis_matrix),
+            coriolis: list(&dynamics.coriolis),
+            gravity: list(&dynamics.gravity),
+            levels: levels.collect(),
+            null_space: NullSpaceOutput {
+                projector: square(&hierarchy.null_projector(cholesky)),
+                basis: hierarchy.null_basis(cholesky).iter().map(list).collect(),
+                velocity: hierarchy.null_velocity(cholesky, &cycle.state.dq).to_vec(),
+            },
+            conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
+            residual: list(cycle.residual),
+            residual_compensation: list(&residual_compensation),
+            torque_demand: list(&demand.0),
+            torque: list(&limited.torque),
+        }
+    }
+}
+
+impl LevelOutput {
+    fn new(cycle: &Cycle<'_, f64>, level: usize, task: &Task<f64>) -> Self {
+        let (rows, hierarchy) = (cycle.rows, cycle.hierarchy);
+        let cholesky = &cycle.dynamics.cholesky;
+        let range = hierarchy.level_range(level);
+        let position = cycle.kinematics.point(&task.point).x;
+        let controlled = (0..3).filter(|&axis| task.axes.xyz[axis]);
+        let lambda = hierarchy.task_inertia(level);
+        let pinv = hierarchy.jbar_pinv(level, cholesky);
+        Self {
+            x: controlled.map(|axis| position[axis]).collect(),
+            jacobian: rows.jacobian[range.clone()].iter().map(list).collect(),
+            jacobian_dot: rows.jacobian_dot[range.clone()].iter().map(list).collect(),
+            jacobian_dot_dq: rows.bias[range.clone()].to_vec(),
+            jbar: hierarchy.jbar(level, cholesky).iter().map(list).collect(),
+            jbar_pinv: (0..DOF)
+                .map(|i| pinv.iter().map(|column| column[i]).collect())
+                .collect(),
+            lambda: (0..range.len())
+                .map(|i| (0..range.len()).map(|j| lambda[(i, j)]).collect())
+                .collect(),
+            command: rows.wanted[range].to_vec(),
+        }
+    }
+}
+
+fn list(vector: &JointVector<f64>) -> Vec<f64> {
+    vector.iter().copied().collect()
+}
+
+fn square(matrix: &JointMatrix<f64>) -> Rows {
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
+}

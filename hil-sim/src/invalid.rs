@@ -1,0 +1,130 @@
+//! Errors of what a user typed or wrote: one line that names the thing, the
+//! value and what is allowed.
+
+use std::fmt;
+
+/// Something given from outside that cannot be used. Exit code 2.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Invalid(String);
+
+impl Invalid {
+    /// "`thing`: `value`; allowed: `allowed`".
+    pub fn new(
+        thing: impl fmt::Display,
+        value: impl fmt::Display,
+        allowed: impl fmt::Display,
+    ) -> Self {
+        Self::line(format!("{thing}: {value}; allowed: {allowed}"))
+    }
+
+    /// A sentence that already says all three.
+    pub fn line(text: impl fmt::Display) -> Self {
+        // A value may carry line breaks of its own: keep the error one line.
+        Self(
+            text.to_string()
+                .split_whitespace()
+                .collect::<Vec<_>>()
+                .join(" "),
+        )
+    }
+
+    /// An unknown name: says which are known, the nearest one first.
+    pub fn name(thing: &str, given: &str, known: &[&str]) -> Self {
+        let all = known.join(", ");
+        match nearest(given, known) {
+            Some(name) => Self::line(format!(
+                "{thing}: unknown '{given}', did you mean '{name}'? allowed: {all}"
+            )),
+            None => Self::line(format!("{thing}: unknown '{given}'; allowed: {all}")),
+        }
+    }
+
+    /// The same error, found in `place`.
+    #[must_use]
+    pub fn within(self, place: impl fmt::Display) -> Self {
+        Self::line(format!("{place}: {}", self.0))
+    }
+}
+
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Invalid {}
+
+/// The known name that `given` was most likely meant to be.
+fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&given.to_lowercase(), name), *name))
+        .filter(|(similarity, _)| *similarity > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name)
+}
+
+/// `value` if it is a finite number within `min..=max`.
+///
+/// # Errors
+/// Names `thing`, the value and the range.
+pub fn in_range(thing: impl fmt::Display, value: f64, min: f64, max: f64) -> Result<f64, Invalid> {
+    if value >= min && value <= max {
+        Ok(value)
+    } else {
+        Err(Invalid::new(thing, value, format_args!("{min} to {max}")))
+    }
+}
+
+/// `value` if it is finite and above zero, up to `max`.
+///
+/// # Errors
+/// Names `thing`, the value and the range.
+pub fn positive(thing: impl fmt::Display, value: f64, max: f64) -> Result<f64, Invalid> {
+    if value > 0.0 && value <= max {
+        Ok(value)
+    } else {
+        Err(Invalid::new(
+            thing,
+            value,
+            format_args!("above 0, at most {max}"),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_one_line_and_suggest_the_nearest_name() {
+        let known = ["hierarchical", "no-observer", "acceleration-level"];
+        assert_eq!(
+            Invalid::name("controller", "hierarchial", &known).to_string(),
+            "controller: unknown 'hierarchial', did you mean 'hierarchical'? \
+             allowed: hierarchical, no-observer, acceleration-level"
+        );
+        assert!(
+            !Invalid::name("controller", "zzz\nqq", &known)
+                .to_string()
+                .contains('\n')
+        );
+        assert!(
+            Invalid::name("controller", "xyz", &known)
+                .to_string()
+                .contains("; allowed")
+        );
+    }
+
+    #[test]
+    fn ranges_refuse_what_is_not_a_number() {
+        assert!(in_range("x", f64::NAN, 0.0, 1.0).is_err());
+        assert!(positive("x", f64::INFINITY, 1e9).is_err());
+        assert_eq!(
+            positive("--duration", -1.0, 3600.0)
+                .unwrap_err()
+                .to_string(),
+            "--duration: -1; allowed: above 0, at most 3600"
+        );
+    }
+}

@@ -1,0 +1,318 @@
+//! Figures of a run, accumulated cycle by cycle.
+
+use controller_core::controller::Step;
+use controller_core::joint::{DOF, JointState, JointVector};
+use serde::Serialize;
+
+use crate::contact::Contact;
+use crate::invalid::Invalid;
+
+/// A figure that an acceptance limit can name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Metric {
+    /// rms error of a level over all cycles \[mm\].
+    Rms(usize),
+    /// Largest error of a level \[mm\].
+    Max(usize),
+    /// Largest plateau of a level over the contacts \[mm\].
+    Plateau(usize),
+}
+
+impl Metric {
+    /// From a name such as `level1_rms_mm`; levels count from 1.
+    ///
+    /// # Errors
+    /// The names that exist for `levels` levels.
+    pub fn parse(name: &str, levels: usize) -> Result<Self, Invalid> {
+        let mut known = Vec::new();
+        for level in 0..levels {
+            for (suffix, metric) in [
+                ("rms", Self::Rms(level)),
+                ("max", Self::Max(level)),
+                ("plateau", Self::Plateau(level)),
+            ] {
+                let full = format!("level{}_{suffix}_mm", level + 1);
+                if full == name {
+                    return Ok(metric);
+                }
+                known.push(full);
+            }
+        }
+        let known: Vec<_> = known.iter().map(String::as_str).collect();
+        Err(Invalid::name("metric", name, &known))
+    }
+
+    /// Its value in the figures of a run; none without samples.
+    #[must_use]
+    pub fn value(self, levels: &[LevelFigures]) -> Option<f64> {
+        match self {
+            Self::Rms(level) => levels[level].rms_mm,
+            Self::Max(level) => levels[level].max_mm,
+            Self::Plateau(level) => levels[level].worst_plateau_mm(),
+        }
+    }
+}
+
+/// Root mean square of what was added.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rms {
+    squares: f64,
+    count: usize,
+}
+
+impl Rms {
+    fn add(&mut self, value: f64) {
+        self.squares += value * value;
+        self.count += 1;
+    }
+
+    fn value(&self) -> Option<f64> {
+        (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
+    }
+}
+
+/// Mean of what was added.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    sum: f64,
+    count: usize,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+    }
+
+    fn value(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}
+
+/// Tracking figures of one level \[mm\]: norms over its axes, of the true
+/// motion, at the cycle instants.
+#[derive(Clone, Debug, Serialize)]
+pub struct LevelFigures {
+    /// Point and axes.
+    pub name: String,
+    /// Over all cycles.
+    pub rms_mm: Option<f64>,
+    /// Largest.
+    pub max_mm: Option<f64>,
+    /// During contacts and 0.3 s after them.
+    pub rms_inside_mm: Option<f64>,
+    /// Over the other cycles.
+    pub rms_outside_mm: Option<f64>,
+    /// Mean over the last 0.2 s before each contact's force ramps down.
+    pub plateau_mm: Vec<Option<f64>>,
+}
+
+impl LevelFigures {
+    /// The largest plateau that was reached.
+    #[must_use]
+    pub fn worst_plateau_mm(&self) -> Option<f64> {
+        self.plateau_mm.iter().flatten().copied().reduce(f64::max)
+    }
+}
+
+/// The observer's figures \[Nm\], over joints and cycles.
+#[derive(Clone, Debug, Serialize)]
+pub struct ResidualFigures {
+    /// rms of r + tau_ext.
+    pub rms_error_nm: Option<f64>,
+    /// rms of r.
+    pub rms_nm: Option<f64>,
+}
+
+/// Torque figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct TorqueFigures {
+    /// Largest |torque| per joint \[Nm\].
+    pub max_abs_nm: [f64; DOF],
+    /// Cycles in which a joint was cut to its limit.
+    pub saturated_cycles: usize,
+}
+
+/// Joint figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct JointFigures {
+    /// Travel per joint, largest less smallest position \[deg\].
+    pub range_deg: [f64; DOF],
+}
+
+/// Cycles in which each limit was active.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct LimitCounts {
+    /// A torque was cut.
+    pub torque: usize,
+    /// A task row was not resolvable.
+    pub rank: usize,
+    /// A joint was beyond its position range.
+    pub position: usize,
+}
+
+/// Faults by kind.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct FaultCounts {
+    /// Measurement or reference that cannot be true.
+    pub implausible: usize,
+    /// Torque that is not finite.
+    pub non_finite_torque: usize,
+}
+
+#[derive(Clone, Debug, Default)]
+struct LevelSums {
+    all: Rms,
+    inside: Rms,
+    outside: Rms,
+    max: Option<f64>,
+    plateaus: Vec<Mean>,
+}
+
+/// What one cycle contributes.
+pub struct Sample<'a> {
+    /// Time \[s\].
+    pub t_s: f64,
+    /// True joint state.
+    pub state: &'a JointState<f64>,
+    /// Error norm per level \[m\].
+    pub errors: &'a [f64],
+    /// Joint torque of the contacts \[Nm\], -tau_ext.
+    pub contact_torque: &'a JointVector<f64>,
+    /// Result of the control cycle.
+    pub step: &'a Step<f64>,
+}
+
+/// Running figures of a run.
+#[derive(Clone, Debug)]
+pub struct Metrics {
+    contacts: Vec<Contact>,
+    levels: Vec<LevelSums>,
+    residual_error: Rms,
+    residual: Rms,
+    max_torque: [f64; DOF],
+    lowest: [f64; DOF],
+    highest: [f64; DOF],
+    limits: LimitCounts,
+    position_limit: JointVector<f64>,
+    cycles: usize,
+}
+
+impl Metrics {
+    /// No cycle yet. `position_limit` \[rad\] is where a joint counts as beyond its range.
+    #[must_use]
+    pub fn new(levels: usize, contacts: &[Contact], position_limit: &JointVector<f64>) -> Self {
+        let sums = LevelSums {
+            plateaus: vec![Mean::default(); contacts.len()],
+            ..LevelSums::default()
+        };
+        Self {
+            contacts: contacts.to_vec(),
+            levels: vec![sums; levels],
+            residual_error: Rms::default(),
+            residual: Rms::default(),
+            max_torque: [0.0; DOF],
+            lowest: [f64::INFINITY; DOF],
+            highest: [f64::NEG_INFINITY; DOF],
+            limits: LimitCounts::default(),
+            position_limit: *position_limit,
+            cycles: 0,
+        }
+    }
+
+    /// Adds a cycle.
+    pub fn add(&mut self, sample: &Sample<'_>) {
+        self.cycles += 1;
+        let inside = self
+            .contacts
+            .iter()
+            .any(|contact| contact.inside(sample.t_s));
+        for (level, &error) in self.levels.iter_mut().zip(sample.errors) {
+            let mm = error * 1e3;
+            level.all.add(mm);
+            if inside {
+                level.inside.add(mm)
+            } else {
+                level.outside.add(mm)
+            }
+            level.max = Some(level.max.map_or(mm, |max| max.max(mm)));
+            for (plateau, contact) in level.plateaus.iter_mut().zip(&self.contacts) {
+                if contact.plateau(sample.t_s) {
+                    plateau.add(mm);
+                }
+            }
+        }
+        let mut beyond = false;
+        for joint in 0..DOF {
+            let (q, torque) = (sample.state.q[joint], sample.step.torque[joint]);
+            let residual = sample.step.residual[joint];
+            self.residual.add(residual);
+            self.residual_error
+                .add(residual - sample.contact_torque[joint]);
+            self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
+            self.lowest[joint] = self.lowest[joint].min(q);
+            self.highest[joint] = self.highest[joint].max(q);
+            beyond |= q.abs() > self.position_limit[joint];
+        }
+        self.limits.position += usize::from(beyond);
+        self.limits.torque += usize::from(sample.step.status.saturated.any());
+        self.limits.rank += usize::from(sample.step.status.rank.any());
+    }
+
+    /// Cycles added.
+    #[must_use]
+    pub fn cycles(&self) -> usize {
+        self.cycles
+    }
+
+    /// Tracking figures; `names` are the levels' labels.
+    #[must_use]
+    pub fn levels(&self, names: &[String]) -> Vec<LevelFigures> {
+        let figures = |(sums, name): (&LevelSums, &String)| LevelFigures {
+            name: name.clone(),
+            rms_mm: sums.all.value(),
+            max_mm: sums.max,
+            rms_inside_mm: sums.inside.value(),
+            rms_outside_mm: sums.outside.value(),
+            plateau_mm: sums.plateaus.iter().map(Mean::value).collect(),
+        };
+        self.levels.iter().zip(names).map(figures).collect()
+    }
+
+    /// The observer's figures.
+    #[must_use]
+    pub fn residual(&self) -> ResidualFigures {
+        ResidualFigures {
+            rms_error_nm: self.residual_error.value(),
+            rms_nm: self.residual.value(),
+        }
+    }
+
+    /// Torque figures.
+    #[must_use]
+    pub fn torque(&self) -> TorqueFigures {
+        TorqueFigures {
+            max_abs_nm: self.max_torque,
+            saturated_cycles: self.limits.torque,
+        }
+    }
+
+    /// Joint figures.
+    #[must_use]
+    pub fn joints(&self) -> JointFigures {
+        let range = |joint: usize| {
+            (self.highest[joint] - self.lowest[joint])
+                .max(0.0)
+                .to_degrees()
+        };
+        JointFigures {
+            range_deg: std::array::from_fn(range),
+        }
+    }
+
+    /// Limit counts.
+    #[must_use]
+    pub fn limits(&self) -> LimitCounts {
+        self.limits
+    }
+}

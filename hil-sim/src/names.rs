@@ -1,0 +1,82 @@
+//! Choices that have a name on the command line and in files.
+
+use crate::invalid::Invalid;
+use crate::plant::PlantKind;
+
+/// A closed set of named choices.
+pub trait Named: Copy + 'static {
+    /// What the choice is called, for messages.
+    const THING: &'static str;
+    /// Every choice with its name.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// The choice called `name`.
+    ///
+    /// # Errors
+    /// The known names, the nearest first.
+    fn from_name(name: &str) -> Result<Self, Invalid> {
+        let found = Self::ALL.iter().find(|(known, _)| *known == name);
+        found.map(|&(_, choice)| choice).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|(known, _)| *known).collect();
+            Invalid::name(Self::THING, name, &known)
+        })
+    }
+
+    /// The name of the choice.
+    fn name(self) -> &'static str
+    where
+        Self: PartialEq,
+    {
+        Self::ALL
+            .iter()
+            .find(|(_, choice)| *choice == self)
+            .map_or("", |(name, _)| name)
+    }
+}
+
+impl Named for PlantKind {
+    const THING: &'static str = "plant";
+    const ALL: &'static [(&'static str, Self)] =
+        &[("ideal", Self::Ideal), ("realistic", Self::Realistic)];
+}
+
+/// How stiff the null space is, relative to the scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NullStiffness {
+    /// A fifth.
+    Low,
+    /// As in the scenario.
+    Normal,
+    /// Four times.
+    High,
+}
+
+impl NullStiffness {
+    /// Factor on K_q.
+    #[must_use]
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Low => 0.2,
+            Self::Normal => 1.0,
+            Self::High => 4.0,
+        }
+    }
+}
+
+impl Named for NullStiffness {
+    const THING: &'static str = "null-space stiffness";
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("low", Self::Low),
+        ("normal", Self::Normal),
+        ("high", Self::High),
+    ];
+}
+
+/// On or off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Switch(pub bool);
+
+impl Named for Switch {
+    const THING: &'static str = "contacts";
+    const ALL: &'static [(&'static str, Self)] = &[("on", Self(true)), ("off", Self(false))];
+}

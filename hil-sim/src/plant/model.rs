@@ -1,0 +1,298 @@
+//! The plant's model: geometry, masses, energies, and points of the arm.
+//!
+//! Everything a link needs is expressed in its own DH frame, where the joint's
+//! axis and the vector back to the previous frame are constants. With
+//! R = Rz(q) Rx(alpha) taking link axes to those of the previous link:
+//!
+//! - the vector from the previous origin to this one is r = (a, d sin alpha,
+//!   d cos alpha);
+//! - the joint's axis is s = (0, sin alpha, cos alpha), through the previous
+//!   origin, so one rad/s of the joint moves this origin with s x r.
+
+use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
+use controller_core::model::{ArmParameters, LinkParameters};
+use controller_core::real::Real;
+
+/// Equations of motion of one arm, M ddq + C dq + g = torque, from its tables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantModel {
+    pub(super) links: [Link; DOF],
+    pub(super) gravity: Vector3<f64>,
+    base_height: f64,
+}
+
+/// One link and the joint that moves it, in the link's own DH frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Link {
+    a: f64,
+    d: f64,
+    cos_alpha: f64,
+    sin_alpha: f64,
+    /// From the previous origin to this one \[m\].
+    pub reach: Vector3<f64>,
+    /// Joint axis.
+    pub axis: Vector3<f64>,
+    /// Velocity of this origin per joint speed \[m/rad\].
+    pub lever: Vector3<f64>,
+    pub mass: f64,
+    com: Vector3<f64>,
+    /// m c \[kg m\].
+    pub first_moment: Vector3<f64>,
+    /// About this origin \[kg m2\].
+    pub inertia: Matrix3<f64>,
+}
+
+/// Velocity of a link: of its rotation and of its origin, link axes.
+#[derive(Clone, Copy)]
+pub(super) struct Twist {
+    pub angular: Vector3<f64>,
+    pub linear: Vector3<f64>,
+}
+
+impl Link {
+    fn new(link: &LinkParameters) -> Self {
+        let (sin_alpha, cos_alpha) = link.alpha.sine_cosine();
+        // pi/2 has a cosine of 6e-17 in f64; the tables mean a right angle.
+        let exact = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+        let (sin_alpha, cos_alpha) = (exact(sin_alpha), exact(cos_alpha));
+        let reach = Vector3::new(link.a, link.d * sin_alpha, link.d * cos_alpha);
+        let axis = Vector3::new(0.0, sin_alpha, cos_alpha);
+        let com = Vector3::from(link.com);
+        let [xx, xy, xz, yy, yz, zz] = link.inertia;
+        let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        // Steiner: m (|c|^2 1 - c c^T).
+        let offset = Matrix3::identity() * com.dot(&com) - com * com.transpose();
+        Self {
+            a: link.a,
+            d: link.d,
+            cos_alpha,
+            sin_alpha,
+            reach,
+            axis,
+            lever: axis.cross(&reach),
+            mass: link.mass,
+            com,
+            first_moment: com * link.mass,
+            inertia: central + offset * link.mass,
+        }
+    }
+
+    /// R: takes link axes to those of the previous link.
+    #[inline]
+    pub fn rotation(&self, q: f64) -> Matrix3<f64> {
+        let (s, c) = q.sine_cosine();
+        let (sa, ca) = (self.sin_alpha, self.cos_alpha);
+        Matrix3::new(c, -s * ca, s * sa, s, c * ca, -c * sa, 0.0, sa, ca)
+    }
+
+    /// Velocity of this link, given the previous one's and R.
+    #[inline]
+    pub fn twist(&self, previous: &Twist, rotation: &Matrix3<f64>, dq: f64) -> Twist {
+        let carried = rotation.tr_mul(&previous.angular);
+        Twist {
+            angular: carried + self.axis * dq,
+            linear: rotation.tr_mul(&previous.linear)
+                + carried.cross(&self.reach)
+                + self.lever * dq,
+        }
+    }
+
+    /// Angular momentum about this origin and linear momentum, link axes.
+    #[inline]
+    pub fn momentum(&self, twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
+        let angular = self.inertia * twist.angular + self.first_moment.cross(&twist.linear);
+        let linear = twist.linear * self.mass - self.first_moment.cross(&twist.angular);
+        (angular, linear)
+    }
+}
+
+impl Twist {
+    pub const REST: Self = Self {
+        angular: Vector3::new(0.0, 0.0, 0.0),
+        linear: Vector3::new(0.0, 0.0, 0.0),
+    };
+}
+
+/// Axes and origins of the joints below one link, and that link's frame, all in
+/// the base-plate frame. Joints beyond the link have a zero axis: they do not
+/// move it.
+struct Chain {
+    axes: [Vector3<f64>; DOF],
+    origins: [Vector3<f64>; DOF],
+    rotation: Matrix3<f64>,
+    origin: Vector3<f64>,
+}
+
+impl Chain {
+    fn point(&self, offset: &Vector3<f64>) -> Vector3<f64> {
+        self.origin + self.rotation * offset
+    }
+
+    /// Velocity of `point` \[m\] per speed of joint `i`.
+    fn column(&self, i: usize, point: &Vector3<f64>) -> Vector3<f64> {
+        self.axes[i].cross(&(point - self.origins[i]))
+    }
+}
+
+impl PlantModel {
+    /// Model of the arm in `parameters`, which must describe bodies of positive
+    /// mass and inertia.
+    #[must_use]
+    pub fn new(parameters: &ArmParameters) -> Self {
+        Self {
+            links: parameters.links.map(|link| Link::new(&link)),
+            gravity: Vector3::from(parameters.gravity),
+            base_height: parameters.base_height,
+        }
+    }
+
+    /// Position \[m\] and velocity \[m/s\], base-plate frame, of the point at
+    /// `offset` \[m\] in the DH frame of `link` (1..=7; 0 is the fixed frame 0,
+    /// above 7 counts as 7).
+    #[must_use]
+    pub fn point(
+        &self,
+        state: &JointState<f64>,
+        link: usize,
+        offset: &Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let chain = self.chain(&state.q, link);
+        let point = chain.point(offset);
+        let velocity = (0..DOF).fold(Vector3::zeros(), |sum, i| {
+            sum + chain.column(i, &point) * state.dq[i]
+        });
+        (point, velocity)
+    }
+
+    /// Joint torque J^T F \[Nm\], positive along +q, of the force `force` \[N\],
+    /// base-plate axes, that acts on the arm at `offset` \[m\] in the DH frame of
+    /// `link` (as in [`PlantModel::point`]).
+    #[must_use]
+    pub fn point_torque(
+        &self,
+        q: &JointVector<f64>,
+        link: usize,
+        offset: &Vector3<f64>,
+        force: &Vector3<f64>,
+    ) -> JointVector<f64> {
+        let chain = self.chain(q, link);
+        let point = chain.point(offset);
+        JointVector::from_fn(|i, _| chain.column(i, &point).dot(force))
+    }
+
+    /// Kinetic energy \[J\].
+    #[must_use]
+    pub fn kinetic_energy(&self, state: &JointState<f64>) -> f64 {
+        let mut twist = Twist::REST;
+        let mut twice = 0.0;
+        for (i, link) in self.links.iter().enumerate() {
+            twist = link.twist(&twist, &link.rotation(state.q[i]), state.dq[i]);
+            let (angular, linear) = link.momentum(&twist);
+            twice += twist.angular.dot(&angular) + twist.linear.dot(&linear);
+        }
+        0.5 * twice
+    }
+
+    /// Potential energy of gravity \[J\], 0 with all mass at the mounting plate.
+    #[must_use]
+    pub fn potential_energy(&self, q: &JointVector<f64>) -> f64 {
+        let mut rotation = Matrix3::identity();
+        let mut origin = Vector3::new(0.0, 0.0, self.base_height);
+        let mut energy = 0.0;
+        for (i, link) in self.links.iter().enumerate() {
+            rotation *= link.rotation(q[i]);
+            origin += rotation * link.reach;
+            energy -= link.mass * self.gravity.dot(&(origin + rotation * link.com));
+        }
+        energy
+    }
+
+    fn chain(&self, q: &JointVector<f64>, link: usize) -> Chain {
+        let mut chain = Chain {
+            axes: [Vector3::zeros(); DOF],
+            origins: [Vector3::zeros(); DOF],
+            rotation: Matrix3::identity(),
+            origin: Vector3::new(0.0, 0.0, self.base_height),
+        };
+        for (i, link) in self.links.iter().enumerate().take(link) {
+            chain.axes[i] = chain.rotation.column(2).into_owned();
+            chain.origins[i] = chain.origin;
+            let (s, c) = q[i].sine_cosine();
+            chain.origin += chain.rotation * Vector3::new(link.a * c, link.a * s, link.d);
+            chain.rotation *= link.rotation(q[i]);
+        }
+        chain
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::model::LWR_IV;
+
+    #[test]
+    fn the_upright_arm_reaches_straight_up() {
+        let model = PlantModel::new(&LWR_IV);
+        let state = JointState {
+            q: JointVector::zeros(),
+            dq: JointVector::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        };
+        let height = 0.3105 + 0.4 + 0.39 + 0.078;
+        let (point, velocity) = model.point(&state, 7, &Vector3::new(0.0, 0.0, 0.078));
+        assert!((point - Vector3::new(0.0, 0.0, height)).amax() < 1e-15);
+        assert!(velocity.amax() < 1e-15);
+        let (base, _) = model.point(&state, 0, &Vector3::zeros());
+        assert_eq!(base, Vector3::new(0.0, 0.0, 0.3105));
+    }
+
+    #[test]
+    fn geometry_with_a_dh_length_is_right() {
+        // A planar arm of two unit links with parallel axes.
+        let mut arm = LWR_IV;
+        for link in &mut arm.links {
+            (link.a, link.alpha, link.d) = (0.0, 0.0, 0.0);
+        }
+        arm.base_height = 0.0;
+        arm.links[0].a = 1.0;
+        arm.links[1].a = 1.0;
+        let model = PlantModel::new(&arm);
+        let mut state = JointState {
+            q: JointVector::zeros(),
+            dq: JointVector::zeros(),
+        };
+        state.q[1] = core::f64::consts::FRAC_PI_2;
+        (state.dq[0], state.dq[1]) = (1.0, 2.0);
+        let (point, velocity) = model.point(&state, 2, &Vector3::zeros());
+        assert!((point - Vector3::new(1.0, 1.0, 0.0)).amax() < 1e-15);
+        assert!((velocity - Vector3::new(-3.0, 1.0, 0.0)).amax() < 1e-15);
+        let torque =
+            model.point_torque(&state.q, 2, &Vector3::zeros(), &Vector3::new(1.0, 0.0, 0.0));
+        assert!((torque[0] + 1.0).abs() < 1e-15 && (torque[1] + 1.0).abs() < 1e-15);
+        // The velocity recursion of the dynamics agrees: m v^2 / 2 of a point mass.
+        for link in &mut arm.links {
+            (link.mass, link.com, link.inertia) = (0.0, [0.0; 3], [0.0; 6]);
+        }
+        arm.links[1].mass = 2.0;
+        let energy = PlantModel::new(&arm).kinetic_energy(&state);
+        assert!((energy - 10.0).abs() < 1e-14, "{energy}");
+    }
+
+    #[test]
+    fn forces_and_velocities_are_dual() {
+        let model = PlantModel::new(&LWR_IV);
+        let state = JointState {
+            q: JointVector::from([0.4, -0.9, 1.3, 0.6, -2.0, 1.1, 0.2]),
+            dq: JointVector::from([0.5, -0.3, 0.8, 1.0, -0.6, 0.2, 2.0]),
+        };
+        let (offset, force) = (
+            Vector3::new(0.1, -0.19, 0.05),
+            Vector3::new(3.0, -7.0, 11.0),
+        );
+        for link in 1..=DOF {
+            let (_, velocity) = model.point(&state, link, &offset);
+            let torque = model.point_torque(&state.q, link, &offset, &force);
+            assert!((torque.dot(&state.dq) - force.dot(&velocity)).abs() < 1e-13);
+            assert!(torque.iter().skip(link).all(|&beyond| beyond == 0.0));
+        }
+    }
+}

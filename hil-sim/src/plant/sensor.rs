@@ -1,0 +1,86 @@
+//! Measurement of the realistic plant: encoder counts, and a velocity made from
+//! their difference by one low-pass pole.
+
+use controller_core::joint::{JointState, JointVector};
+use controller_core::real::Real;
+
+/// Encoder step \[rad\].
+pub const ENCODER_STEP: f64 = 2e-5;
+
+/// Corner frequency of the velocity filter \[Hz\].
+pub const VELOCITY_CORNER: f64 = 60.0;
+
+/// Encoders and velocity filter of all joints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    cycle_s: f64,
+    /// Share of the new difference quotient in the filtered velocity.
+    pole: f64,
+    last: JointState<f64>,
+}
+
+impl Sensor {
+    /// Sensor of an arm at rest at `q0` \[rad\], read every `cycle_s` \[s\].
+    #[must_use]
+    pub fn new(q0: &JointVector<f64>, cycle_s: f64) -> Self {
+        let decay = core::f64::consts::TAU * VELOCITY_CORNER * cycle_s;
+        Self {
+            cycle_s,
+            pole: 1.0 - decay.exp_negative(),
+            last: JointState {
+                q: q0.map(quantised),
+                dq: JointVector::zeros(),
+            },
+        }
+    }
+
+    /// Reading of an arm at `q` \[rad\], one cycle after the last reading.
+    pub fn measure(&mut self, q: &JointVector<f64>) -> JointState<f64> {
+        let q = q.map(quantised);
+        let difference = (q - self.last.q) / self.cycle_s;
+        let dq = self.last.dq + (difference - self.last.dq) * self.pole;
+        self.last = JointState { q, dq };
+        self.last
+    }
+}
+
+/// The nearest encoder position to an angle \[rad\].
+#[must_use]
+pub fn quantised(angle: f64) -> f64 {
+    (angle / ENCODER_STEP).round() * ENCODER_STEP
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_the_nearest_multiples_of_the_step() {
+        let mut worst = 0.0f64;
+        for i in -50_000..50_000 {
+            let angle = f64::from(i) * 6.1e-5;
+            let reading = quantised(angle);
+            worst = worst.max((reading - angle).abs());
+            let count = reading / ENCODER_STEP;
+            assert!((count - count.round()).abs() < 1e-9);
+        }
+        assert!(worst <= 0.5 * ENCODER_STEP + 1e-15 && worst > 0.49 * ENCODER_STEP);
+    }
+
+    #[test]
+    fn the_velocity_starts_at_zero_and_settles_at_the_true_one() {
+        let (cycle, speed) = (0.002, 0.5);
+        let position = |n: i32| JointVector::from_element(0.3 + speed * cycle * f64::from(n));
+        let mut sensor = Sensor::new(&position(0), cycle);
+        assert_eq!(sensor.measure(&position(0)).dq, JointVector::zeros());
+        let pole = 1.0 - libm::exp(-core::f64::consts::TAU * 60.0 * cycle);
+        // 1 mrad a cycle is 50 encoder steps: the difference quotient is exact.
+        let first = sensor.measure(&position(1)).dq[0];
+        assert!((first - pole * speed).abs() < 1e-9, "{first}");
+        for n in 2..40 {
+            sensor.measure(&position(n));
+        }
+        let settled = sensor.measure(&position(40)).dq[0];
+        assert!((settled - speed).abs() < 1e-8, "{settled}");
+    }
+}

@@ -1,0 +1,448 @@
+//! An experiment as data: arm, start, task levels with their references,
+//! null-space compliance, contacts and acceptance limits. The built-in scenarios are TOML files
+//! like any other.
+
+mod point;
+mod reference;
+
+use std::path::Path;
+
+use controller_core::config::ControllerConfig;
+use controller_core::joint::{DOF, JointVector, diagonal};
+use controller_core::law::{NullSpace, Posture};
+use controller_core::measurement::Reference;
+use controller_core::model::{ArmParameters, LWR_IV};
+use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task};
+use serde::Deserialize;
+
+use crate::contact::Contact;
+use crate::invalid::{Invalid, in_range, positive};
+use crate::metrics::Metric;
+use crate::names::Named;
+use crate::plant::{PlantKind, PlantModel};
+
+pub use point::PointSpec;
+pub use reference::ReferenceSpec;
+
+/// The scenarios that come with the program: name and TOML text.
+pub const BUILT_IN: &[(&str, &str)] = &[("two-level", include_str!("../scenarios/two-level.toml"))];
+
+/// Longest experiment \[s\].
+pub const DURATION_MAX_S: f64 = 3600.0;
+
+/// Shortest and longest cycle \[ms\].
+pub const CYCLE_RANGE_MS: [f64; 2] = [0.1, 20.0];
+
+/// Largest gain a file may ask for; far beyond any use, far below overflow.
+const GAIN_MAX: f64 = 1e6;
+
+/// An experiment, as in its file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Name, also of the output folder.
+    pub name: String,
+    /// Name of the arm.
+    pub robot: String,
+    /// Length \[s\].
+    pub duration_s: f64,
+    /// Control cycle \[ms\].
+    pub cycle_ms: f64,
+    /// Posture at the start \[deg\], at rest; also q_d of the null space.
+    pub start_deg: [f64; DOF],
+    /// Task levels, highest priority first.
+    #[serde(rename = "level")]
+    pub levels: Vec<LevelSpec>,
+    /// Compliance of what the tasks leave.
+    pub null_space: NullSpaceSpec,
+    /// External-torque observer.
+    pub observer: ObserverSpec,
+    /// Pushes by a person or an obstacle.
+    #[serde(rename = "contact", default)]
+    pub contacts: Vec<Contact>,
+    /// What a run must stay below.
+    #[serde(rename = "limit", default)]
+    pub limits: Vec<Limit>,
+}
+
+/// One task level.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LevelSpec {
+    /// Controlled point.
+    pub point: PointSpec,
+    /// Controlled base-plate axes, such as "xyz".
+    pub axes: String,
+    /// K_p \[1/s2\].
+    pub stiffness: AxisGain,
+    /// K_d \[1/s\].
+    pub damping: AxisGain,
+    /// Motion of the point.
+    pub reference: ReferenceSpec,
+}
+
+/// One gain for all axes of a task, or one for each.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum AxisGain {
+    /// The same on every axis.
+    Uniform(f64),
+    /// In the order of the task's axes.
+    PerAxis(Vec<f64>),
+}
+
+/// Compliance of the null space.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NullSpaceSpec {
+    /// K_q \[Nm/rad\], diagonal.
+    pub stiffness: [f64; DOF],
+    /// D \[Nms/rad\], diagonal.
+    pub damping: [f64; DOF],
+    /// Where q_d comes from.
+    #[serde(default)]
+    pub posture: PostureSpec,
+    /// K of (14) \[1/s\], for the acceleration-level controllers.
+    #[serde(default = "default_rate_gain")]
+    pub rate_gain: f64,
+}
+
+fn default_rate_gain() -> f64 {
+    10.0
+}
+
+/// Where q_d comes from.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PostureSpec {
+    /// The start posture.
+    #[default]
+    Constant,
+    /// (51) with the coupling of moving levels.
+    IntegralCoupled,
+    /// (51) as printed.
+    IntegralUncoupled,
+}
+
+/// External-torque observer.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObserverSpec {
+    /// K_I \[1/s\], every joint.
+    pub gain: f64,
+}
+
+/// An acceptance limit, for one plant with or without contacts.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limit {
+    /// "ideal" or "realistic".
+    pub plant: String,
+    /// With contacts or without.
+    pub contacts: bool,
+    /// Name of the metric, such as "level1_rms_mm".
+    pub metric: String,
+    /// The metric passes below this.
+    pub below: f64,
+}
+
+impl Scenario {
+    /// The built-in scenario of this name, or the file if it looks like a path.
+    ///
+    /// # Errors
+    /// Unknown name, unreadable file, or anything in it that cannot be used.
+    pub fn find(name: &str) -> Result<Self, Invalid> {
+        if let Some((_, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
+            return Self::parse(text).map_err(|error| error.within(name));
+        }
+        let looks_like_path =
+            name.contains(std::path::MAIN_SEPARATOR) || Path::new(name).extension().is_some();
+        if !looks_like_path {
+            let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
+            return Err(Invalid::name("scenario", name, &known));
+        }
+        let text = std::fs::read_to_string(name).map_err(|error| {
+            Invalid::new(
+                "scenario file",
+                name,
+                format_args!("a readable TOML file ({error})"),
+            )
+        })?;
+        Self::parse(&text).map_err(|error| error.within(name))
+    }
+
+    /// The TOML text of a built-in scenario.
+    ///
+    /// # Errors
+    /// Unknown name.
+    pub fn built_in_text(name: &str) -> Result<&'static str, Invalid> {
+        let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
+        let found = BUILT_IN.iter().find(|(known, _)| *known == name);
+        found
+            .map(|(_, text)| *text)
+            .ok_or_else(|| Invalid::name("scenario", name, &known))
+    }
+
+    /// Reads and checks a scenario.
+    ///
+    /// # Errors
+    /// The first line or key that cannot be used.
+    pub fn parse(text: &str) -> Result<Self, Invalid> {
+        let scenario: Self = toml::from_str(text).map_err(|error| {
+            let line = error
+                .span()
+                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            Invalid::line(format_args!("line {line}: {}", error.message()))
+        })?;
+        scenario.validate()?;
+        Ok(scenario)
+    }
+
+    /// Checks every number, name and shape that the file format leaves open.
+    ///
+    /// # Errors
+    /// The first key that cannot be used.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        let simple = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if self.name.is_empty() || !self.name.chars().all(simple) {
+            return Err(Invalid::new(
+                "name",
+                &self.name,
+                "letters, digits, '-' and '_'",
+            ));
+        }
+        if self.robot != LWR_IV.name {
+            return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
+        }
+        positive("duration_s", self.duration_s, DURATION_MAX_S)?;
+        let [min, max] = CYCLE_RANGE_MS;
+        in_range("cycle_ms", self.cycle_ms, min, max)?;
+        for (joint, (&angle, link)) in (1..).zip(self.start_deg.iter().zip(&LWR_IV.links)) {
+            let limit = link.position_limit.to_degrees();
+            in_range(
+                format_args!("start_deg of joint {joint}"),
+                angle,
+                -limit,
+                limit,
+            )?;
+        }
+        if self.levels.is_empty() || self.levels.len() > MAX_LEVELS {
+            return Err(Invalid::new(
+                "level",
+                format_args!("{} levels", self.levels.len()),
+                "1 to 7",
+            ));
+        }
+        for (number, level) in (1..).zip(&self.levels) {
+            level
+                .validate()
+                .map_err(|error| error.within(format_args!("level {number}")))?;
+        }
+        let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
+        if rows > MAX_ROWS {
+            return Err(Invalid::new(
+                "level",
+                format_args!("{rows} rows together"),
+                "1 to 7",
+            ));
+        }
+        for joint in 0..DOF {
+            let number = joint + 1;
+            positive(
+                format_args!("null_space.stiffness of joint {number}"),
+                self.null_space.stiffness[joint],
+                GAIN_MAX,
+            )?;
+            positive(
+                format_args!("null_space.damping of joint {number}"),
+                self.null_space.damping[joint],
+                GAIN_MAX,
+            )?;
+        }
+        in_range(
+            "null_space.rate_gain",
+            self.null_space.rate_gain,
+            0.0,
+            GAIN_MAX,
+        )?;
+        positive("observer.gain", self.observer.gain, GAIN_MAX)?;
+        for (number, contact) in (1..).zip(&self.contacts) {
+            contact
+                .validate()
+                .map_err(|error| error.within(format_args!("contact {number}")))?;
+        }
+        for (number, limit) in (1..).zip(&self.limits) {
+            let place = |error: Invalid| error.within(format_args!("limit {number}"));
+            PlantKind::from_name(&limit.plant).map_err(place)?;
+            Metric::parse(&limit.metric, self.levels.len()).map_err(place)?;
+            positive("below", limit.below, 1e9).map_err(place)?;
+        }
+        Ok(())
+    }
+
+    /// Tables of the arm.
+    #[must_use]
+    pub fn arm(&self) -> &'static ArmParameters {
+        &LWR_IV
+    }
+
+    /// Start posture \[rad\].
+    #[must_use]
+    pub fn start(&self) -> JointVector<f64> {
+        JointVector::from(self.start_deg.map(f64::to_radians))
+    }
+
+    /// Control cycle \[s\].
+    #[must_use]
+    pub fn cycle_s(&self) -> f64 {
+        self.cycle_ms / 1e3
+    }
+
+    /// Number of control cycles.
+    #[must_use]
+    pub fn cycles(&self) -> usize {
+        // A duration of whole cycles is not to lose one to rounding.
+        ((self.duration_s / self.cycle_s()) + 1e-6).floor().max(1.0) as usize
+    }
+
+    /// The configuration of the controller core.
+    #[must_use]
+    pub fn controller_config(&self) -> ControllerConfig<f64> {
+        ControllerConfig {
+            tasks: self.levels.iter().map(LevelSpec::task).collect(),
+            null_space: NullSpace {
+                stiffness: diagonal(self.null_space.stiffness),
+                damping: diagonal(self.null_space.damping),
+                posture: match self.null_space.posture {
+                    PostureSpec::Constant => Posture::Constant,
+                    PostureSpec::IntegralCoupled => Posture::IntegralCoupled,
+                    PostureSpec::IntegralUncoupled => Posture::IntegralUncoupled,
+                },
+            },
+            observer_gain: JointVector::repeat(self.observer.gain),
+            cycle_s: self.cycle_s(),
+            dead_cycles: 0,
+        }
+    }
+
+    /// The reference at time `t_s`, about the points' positions at the start.
+    #[must_use]
+    pub fn reference(&self, origins: &Origins, t_s: f64) -> Reference<f64> {
+        let tasks = self.levels.iter().zip(&origins.0);
+        Reference {
+            tasks: tasks
+                .map(|(level, origin)| level.reference.trajectory().sample(origin, t_s))
+                .collect(),
+            posture: self.start(),
+        }
+    }
+
+    /// Where the levels' points are at the start.
+    #[must_use]
+    pub fn origins(&self) -> Origins {
+        let model = PlantModel::new(self.arm());
+        let state = controller_core::joint::JointState {
+            q: self.start(),
+            dq: JointVector::zeros(),
+        };
+        let position = |level: &LevelSpec| {
+            let point = level.point.resolve();
+            model.point(&state, point.link, &point.offset).0
+        };
+        Origins(self.levels.iter().map(position).collect())
+    }
+}
+
+/// Positions of the levels' points at the start \[m\], base-plate frame.
+#[derive(Clone, Debug)]
+pub struct Origins(Vec<controller_core::joint::Vector3<f64>>);
+
+impl LevelSpec {
+    fn validate(&self) -> Result<(), Invalid> {
+        self.point.validate()?;
+        let Some(axes) = Axes::from_name(&self.axes) else {
+            return Err(Invalid::new(
+                "axes",
+                &self.axes,
+                "letters of xyz in this order, such as xyz, xy, z",
+            ));
+        };
+        for (name, gain) in [("stiffness", &self.stiffness), ("damping", &self.damping)] {
+            if let AxisGain::PerAxis(values) = gain
+                && values.len() != axes.count()
+            {
+                let allowed = format!("1 or {} for axes \"{}\"", axes.count(), self.axes);
+                return Err(Invalid::new(
+                    name,
+                    format_args!("{} values", values.len()),
+                    allowed,
+                ));
+            }
+            for value in gain.values() {
+                positive(name, value, GAIN_MAX)?;
+            }
+        }
+        self.reference.validate()
+    }
+
+    /// The core's task. The level must be valid.
+    #[must_use]
+    pub fn task(&self) -> Task<f64> {
+        let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
+        let spread = |gain: &AxisGain| match gain {
+            AxisGain::Uniform(value) => [*value; 3],
+            AxisGain::PerAxis(values) => {
+                let mut values = values.iter();
+                axes.xyz.map(|on| {
+                    if on {
+                        *values.next().unwrap_or(&1.0)
+                    } else {
+                        1.0
+                    }
+                })
+            }
+        };
+        Task::diagonal(
+            self.point.resolve(),
+            axes,
+            spread(&self.stiffness),
+            spread(&self.damping),
+        )
+    }
+
+    /// "flange xyz".
+    #[must_use]
+    pub fn label(&self) -> String {
+        format!("{} {}", self.point.label(), self.axes)
+    }
+}
+
+impl AxisGain {
+    fn values(&self) -> Vec<f64> {
+        match self {
+            Self::Uniform(value) => vec![*value],
+            Self::PerAxis(values) => values.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_scenarios_are_valid_and_bear_their_name() {
+        for (name, text) in BUILT_IN {
+            assert_eq!(Scenario::parse(text).expect(name).name, *name);
+        }
+    }
+
+    #[test]
+    fn cycles_are_whole() {
+        let mut scenario = Scenario::find("two-level").unwrap();
+        assert_eq!(scenario.cycles(), 10_000);
+        scenario.duration_s = 0.3;
+        scenario.cycle_ms = 0.1;
+        assert_eq!(scenario.cycles(), 3_000);
+    }
+}

@@ -1,0 +1,92 @@
+//! Points of the arm in files: by name, or on any link.
+
+use controller_core::joint::DOF;
+use controller_core::kinematics::LinkPoint;
+use controller_core::model::LWR_IV_POINTS;
+use serde::Deserialize;
+
+use crate::invalid::{Invalid, in_range};
+
+/// Farthest point from its link's frame \[m\].
+const OFFSET_MAX_M: f64 = 2.0;
+
+/// A point fixed to a link.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a point name or { link = 1..7, offset_m = [x, y, z] }"
+)]
+pub enum PointSpec {
+    /// A named point of the arm.
+    Name(String),
+    /// A point given in the DH frame of a link.
+    OnLink(OnLink),
+}
+
+/// A point given in the DH frame of a link.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnLink {
+    /// 1..=7.
+    pub link: usize,
+    /// Position \[m\] in that frame.
+    pub offset_m: [f64; 3],
+}
+
+impl PointSpec {
+    /// Checks name, link and offset.
+    ///
+    /// # Errors
+    /// What cannot be used.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        match self {
+            Self::Name(name) => {
+                let known = LWR_IV_POINTS.map(|point| point.name);
+                if known.contains(&name.as_str()) {
+                    Ok(())
+                } else {
+                    Err(Invalid::name("point", name, &known))
+                }
+            }
+            Self::OnLink(OnLink { link, offset_m }) => {
+                if !(1..=DOF).contains(link) {
+                    return Err(Invalid::new("link", link, "1 to 7"));
+                }
+                offset_m.iter().try_for_each(|&x| {
+                    in_range("offset_m", x, -OFFSET_MAX_M, OFFSET_MAX_M).map(drop)
+                })
+            }
+        }
+    }
+
+    /// The point. An invalid name counts as the flange.
+    #[must_use]
+    pub fn resolve(&self) -> LinkPoint<f64> {
+        match self {
+            Self::Name(name) => {
+                let [.., flange] = LWR_IV_POINTS;
+                let point = LWR_IV_POINTS
+                    .into_iter()
+                    .find(|point| point.name == name)
+                    .unwrap_or(flange);
+                LinkPoint {
+                    link: point.link,
+                    offset: point.offset.into(),
+                }
+            }
+            Self::OnLink(OnLink { link, offset_m }) => LinkPoint {
+                link: *link,
+                offset: (*offset_m).into(),
+            },
+        }
+    }
+
+    /// Its name, or "link N".
+    #[must_use]
+    pub fn label(&self) -> String {
+        match self {
+            Self::Name(name) => name.clone(),
+            Self::OnLink(point) => format!("link {}", point.link),
+        }
+    }
+}

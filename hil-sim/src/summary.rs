@@ -1,0 +1,129 @@
+//! summary.json: what a run was, what it measured, and the verdict.
+
+use serde::Serialize;
+
+use crate::metrics::{
+    FaultCounts, JointFigures, LevelFigures, LimitCounts, Metric, ResidualFigures, TorqueFigures,
+};
+use crate::names::Named;
+use crate::plant::PlantKind;
+use crate::scenario::Scenario;
+
+/// Outcome of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Every judged limit was kept.
+    Pass,
+    /// A limit was exceeded.
+    Fail,
+    /// Safety stopped the run.
+    Stopped,
+}
+
+impl Verdict {
+    /// Exit code of a run with this verdict.
+    #[must_use]
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Pass => 0,
+            Self::Fail => 1,
+            Self::Stopped => 3,
+        }
+    }
+
+    /// "pass", "fail" or "stopped".
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
+/// One acceptance limit and how the run stands to it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Acceptance {
+    /// Name of the metric.
+    pub metric: String,
+    /// It must be below this.
+    pub limit: f64,
+    /// What the run reached; null without samples.
+    pub value: Option<f64>,
+    /// Null where there is nothing to judge.
+    pub pass: Option<bool>,
+}
+
+/// The summary of one run, field by field as in summary.json.
+#[derive(Clone, Debug, Serialize)]
+#[expect(
+    missing_docs,
+    reason = "the fields are those of the file, described in docs/architecture.md"
+)]
+pub struct Summary {
+    pub scenario: String,
+    pub controller: &'static str,
+    pub plant: &'static str,
+    pub contacts: bool,
+    pub seed: u64,
+    pub cycle_ms: f64,
+    pub duration_s: f64,
+    pub cycles: usize,
+    pub verdict: Verdict,
+    pub reason: Option<String>,
+    pub acceptance: Vec<Acceptance>,
+    pub levels: Vec<LevelFigures>,
+    pub residual: ResidualFigures,
+    pub torque: TorqueFigures,
+    pub joints: JointFigures,
+    pub hand_force_max_n: Option<f64>,
+    pub limits: LimitCounts,
+    pub faults: FaultCounts,
+}
+
+/// Holds the figures against the limits that the scenario sets for this plant.
+#[must_use]
+pub fn judge(
+    scenario: &Scenario,
+    plant: PlantKind,
+    contacts: bool,
+    levels: &[LevelFigures],
+) -> Vec<Acceptance> {
+    let applies = scenario.limits.iter().filter(|limit| {
+        PlantKind::from_name(&limit.plant) == Ok(plant) && limit.contacts == contacts
+    });
+    applies
+        .filter_map(|limit| {
+            let metric = Metric::parse(&limit.metric, levels.len()).ok()?;
+            let value = metric.value(levels);
+            Some(Acceptance {
+                metric: limit.metric.clone(),
+                limit: limit.below,
+                value,
+                pass: value.map(|value| value < limit.below),
+            })
+        })
+        .collect()
+}
+
+/// Verdict and reason of a run that safety did not stop.
+#[must_use]
+pub fn verdict(acceptance: &[Acceptance]) -> (Verdict, Option<String>) {
+    let failed = acceptance.iter().filter(|limit| limit.pass == Some(false));
+    let reasons: Vec<_> = failed
+        .map(|limit| {
+            let value = limit.value.unwrap_or(f64::NAN);
+            format!(
+                "{} = {value:.4}, must be below {}",
+                limit.metric, limit.limit
+            )
+        })
+        .collect();
+    if reasons.is_empty() {
+        (Verdict::Pass, None)
+    } else {
+        (Verdict::Fail, Some(reasons.join("; ")))
+    }
+}
