@@ -6,6 +6,7 @@ use controller_core::kinematics::Kinematics;
 use controller_core::model::{ArmModel, LWR_IV};
 
 pub mod config;
+pub mod golden;
 pub mod random;
 
 /// The arm under test.

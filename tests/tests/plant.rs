@@ -6,9 +6,7 @@ use controller_core::model::{ArmParameters, LWR_IV};
 use hil_sim::plant::{Plant, PlantKind, PlantModel, Rng, mismatched, noise};
 use std::f64::consts::{PI, TAU};
 
-#[path = "../golden/reader.rs"]
-mod golden;
-use golden::{Golden, Tables, Worst, file};
+use stratum_tests::golden::{Golden, Tables, Worst, file};
 
 fn none() -> JointVector<f64> {
     JointVector::zeros()

@@ -21,11 +21,31 @@ use super::{ArmParameters, LinkParameters, NamedPoint};
 /// shoulder, `upper` 0.25 m along the upper arm, `forearm` 0.2 m along the
 /// forearm; the wrist is the distal end of link 5.
 pub const LWR_IV_POINTS: [NamedPoint; 5] = [
-    NamedPoint { name: "upper", link: 3, offset: [0.0, 0.15, 0.0] },
-    NamedPoint { name: "elbow", link: 3, offset: [0.0, 0.0, 0.0] },
-    NamedPoint { name: "forearm", link: 5, offset: [0.0, -0.19, 0.0] },
-    NamedPoint { name: "wrist", link: 5, offset: [0.0, 0.0, 0.0] },
-    NamedPoint { name: "flange", link: 7, offset: [0.0, 0.0, 0.078] },
+    NamedPoint {
+        name: "upper",
+        link: 3,
+        offset: [0.0, 0.15, 0.0],
+    },
+    NamedPoint {
+        name: "elbow",
+        link: 3,
+        offset: [0.0, 0.0, 0.0],
+    },
+    NamedPoint {
+        name: "forearm",
+        link: 5,
+        offset: [0.0, -0.19, 0.0],
+    },
+    NamedPoint {
+        name: "wrist",
+        link: 5,
+        offset: [0.0, 0.0, 0.0],
+    },
+    NamedPoint {
+        name: "flange",
+        link: 7,
+        offset: [0.0, 0.0, 0.078],
+    },
 ];
 
 /// KUKA LWR IV+ without tool, mounted upright.

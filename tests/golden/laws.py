@@ -1,0 +1,233 @@
+"""Golden data of the control laws: the paper's formulas on Pinocchio's terms.
+
+    pip install pin numpy
+    python laws.py                # writes laws.json beside this file
+
+Every case is a state as `hil-sim explain` reads it and what must come out. The
+formulas are the explicit ones, with projectors and inverses, one level after
+the other; nothing here factors the stacked tasks.
+"""
+
+import json
+import pathlib
+
+import numpy as np
+import pinocchio as pin
+
+from generate import DOF, POINTS, build, column, frame_jacobian, jacobian_derivative, mass_matrix
+
+HERE = pathlib.Path(__file__).resolve().parent
+SEED = 20181030
+AXES = "xyz"
+
+# Levels of the cases: points and axes, two and three levels and other splits.
+LEVELS = {
+    "two levels": [("flange", "xyz")],
+    "three levels": [("flange", "xyz"), ("wrist", "xy")],
+    # Positions resolve six rows: the last joint moves no point of its axis.
+    "six rows": [("flange", "xyz"), ("elbow", "x"), ("wrist", "yz")],
+    "single rows": [("wrist", "z"), ("flange", "y"), ("elbow", "x"), ("forearm", "z")],
+}
+CONTROLLERS = ["hierarchical", "no-observer", "acceleration-level"]
+CASES_EACH = 6
+
+
+def null_basis(rows):
+    """Orthonormal rows that span the null space of `rows`."""
+    _, _, vt = np.linalg.svd(rows, full_matrices=True)
+    return vt[rows.shape[0] :]
+
+
+def terms(model, data, arm, state):
+    """M, C, g and the rows of every level."""
+    q, dq = np.array(state["q"]), np.array(state["dq"])
+    m = mass_matrix(model, data, q)
+    c = pin.computeCoriolisMatrix(model, data, q, dq).copy()
+    g = pin.computeGeneralizedGravity(model, data, q).copy()
+    levels = []
+    for level in state["levels"]:
+        frame = model.getFrameId(level["point"])
+        pick = [AXES.index(axis) for axis in level["axes"]]
+        jacobian = frame_jacobian(model, data, q, frame)[pick]
+        x = data.oMf[frame].translation.copy()[pick]
+        derivative = jacobian_derivative(model, data, q, dq, frame)[pick]
+        desired = {key: np.array(level[key]) for key in ("x", "dx", "ddx", "kp", "kd")}
+        command = (
+            desired["ddx"]
+            + desired["kd"] * (desired["dx"] - jacobian @ dq)
+            + desired["kp"] * (desired["x"] - x)
+        )
+        levels.append({"x": x, "j": jacobian, "jdot": derivative, "command": command})
+    return m, c, g, levels
+
+
+def projected(m, levels):
+    """Jbar_i, Jbar_i^# and Lambda_i (17)-(21): J_i cut to what the levels above
+    leave free, weighted by the inertia."""
+    above = np.zeros((0, DOF))
+    for level in levels:
+        z = null_basis(above) if len(above) else np.eye(DOF)
+        free = z.T @ np.linalg.inv(z @ m @ z.T) @ z @ m
+        jbar = level["j"] @ free
+        lam = np.linalg.inv(jbar @ np.linalg.inv(m) @ jbar.T)
+        level.update(jbar=jbar, lam=lam, pinv=np.linalg.inv(m) @ jbar.T @ lam)
+        above = np.vstack([above, level["j"]])
+    return above
+
+
+def observer_step(step, momentum):
+    """Exact discrete form of (30)."""
+    h, gain = step["h"], np.array(step["gain"])
+    rate = (momentum - np.array(step["momentum_prev"])) / h - np.array(step["input_prev"])
+    decay = np.exp(-gain * h)
+    return decay * np.array(step["residual_prev"]) + (1.0 - decay) * rate
+
+
+def hierarchical(m, c, g, levels, state, residual):
+    """(34) in its exact form, on joint level."""
+    dq, space = np.array(state["dq"]), state["null_space"]
+    minv = np.linalg.inv(m)
+    stack = projected(m, levels)
+    derivative = np.vstack([level["jdot"] for level in levels])
+    ddq, w, free = np.zeros(DOF), np.zeros(DOF), np.eye(DOF)
+    compensation = np.zeros(DOF)
+    for level in levels:
+        wanted = level["command"] - level["jdot"] @ dq
+        ddq = ddq + level["pinv"] @ (wanted - level["j"] @ ddq)
+        w = w + level["pinv"] @ level["jbar"] @ dq
+        free = free - level["pinv"] @ level["jbar"]
+        compensation -= level["jbar"].T @ level["lam"] @ level["jbar"] @ minv @ residual
+    momentum = np.linalg.inv(stack @ minv @ stack.T) @ stack @ dq
+    force = (
+        -c @ dq
+        - c.T @ w
+        + derivative.T @ momentum
+        + np.array(space["stiffness"]) * (np.array(space["q_d"]) - np.array(state["q"]))
+        - np.array(space["damping"]) * (dq - w)
+    )
+    return m @ ddq + compensation + free.T @ force + c @ dq + g, compensation, free
+
+
+def acceleration_level(m, c, g, levels, state):
+    """(7)-(9), (12)-(14): Moore-Penrose inverses, level by level."""
+    dq = np.array(state["dq"])
+    ddq, free = np.zeros(DOF), np.eye(DOF)
+    for level in levels:
+        inverse = np.linalg.pinv(level["j"] @ free)
+        ddq = ddq + inverse @ (level["command"] - level["jdot"] @ dq - level["j"] @ ddq)
+        free = free - inverse @ (level["j"] @ free)
+    ddq = ddq - free @ (np.array(state["null_space"]["rate_gain"]) * dq)
+    return m @ ddq + c @ dq + g
+
+
+def expected(model, data, arm, state):
+    m, c, g, levels = terms(model, data, arm, state)
+    dq = np.array(state["dq"])
+    residual = np.array(state["residual"])
+    if "observer" in state:
+        residual = observer_step(state["observer"], m @ dq)
+    in_law = residual if state["controller"] == "hierarchical" else np.zeros(DOF)
+    torque, compensation, free = hierarchical(m, c, g, levels, state, in_law)
+    if state["controller"] == "acceleration-level":
+        torque = acceleration_level(m, c, g, levels, state)
+    limit = column(arm, "torque_limit")
+    return {
+        "mass_matrix": m,
+        "coriolis_matrix": c,
+        "coriolis": c @ dq,
+        "gravity": g,
+        "levels": [
+            {
+                "x": level["x"],
+                "jacobian": level["j"],
+                "jacobian_dot": level["jdot"],
+                "jacobian_dot_dq": level["jdot"] @ dq,
+                "jbar": level["jbar"],
+                "jbar_pinv": level["pinv"],
+                "lambda": level["lam"],
+                "command": level["command"],
+            }
+            for level in levels
+        ],
+        "null_space": {"projector": free},
+        "residual": residual,
+        "residual_compensation": compensation,
+        "torque_demand": torque,
+        "torque": np.clip(torque, -limit, limit),
+    }
+
+
+def random_state(arm, rng, levels, controller, with_observer):
+    q = rng.uniform(-1, 1, DOF) * column(arm, "position_limit")
+    dq = rng.uniform(-0.5, 0.5, DOF) * column(arm, "speed_limit")
+    signed = lambda n, scale: rng.uniform(-scale, scale, n)
+    state = {
+        "robot": "lwr_iv",
+        "q": q,
+        "dq": dq,
+        "residual": signed(DOF, 10.0),
+        "levels": [
+            {
+                "point": point,
+                "axes": axes,
+                "x": signed(len(axes), 0.5),
+                "dx": signed(len(axes), 0.5),
+                "ddx": signed(len(axes), 2.0),
+                "kp": rng.uniform(10, 400, len(axes)),
+                "kd": rng.uniform(1, 40, len(axes)),
+            }
+            for point, axes in levels
+        ],
+        "null_space": {
+            "q_d": q + signed(DOF, 0.3),
+            "stiffness": rng.uniform(1, 40, DOF),
+            "damping": rng.uniform(0.01, 5, DOF),
+            "rate_gain": rng.uniform(1, 20, DOF),
+        },
+        "controller": controller,
+    }
+    if with_observer:
+        state["observer"] = {
+            "momentum_prev": signed(DOF, 1.0),
+            "input_prev": signed(DOF, 50.0),
+            "residual_prev": signed(DOF, 10.0),
+            "gain": rng.uniform(20, 200, DOF),
+            "h": 0.002,
+        }
+    return state
+
+
+def plain(value):
+    if isinstance(value, dict):
+        return {key: plain(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [plain(entry) for entry in value]
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def main():
+    arm = json.loads((HERE / "arm.json").read_text())
+    model = build(arm)
+    data = model.createData()
+    rng = np.random.default_rng(SEED)
+    cases = []
+    for name, levels in LEVELS.items():
+        for controller in CONTROLLERS:
+            accepted = 0
+            while accepted < CASES_EACH:
+                state = plain(random_state(arm, rng, levels, controller, accepted % 2 == 1))
+                out = expected(model, data, arm, state)
+                # Explicit inverses lose as many digits as the levels' inertias
+                # are badly conditioned: such states cannot be judged by them.
+                worst = max(np.linalg.cond(level["lambda"]) for level in out["levels"])
+                largest = max(np.abs(level["lambda"]).max() for level in out["levels"])
+                if worst < 1e3 and largest < 1e3:
+                    cases.append({"name": name, "input": state, "expected": plain(out)})
+                    accepted += 1
+    text = json.dumps({"cases": cases}, separators=(",", ":"))
+    (HERE / "laws.json").write_text(text.replace('{"name"', '\n{"name"') + "\n")
+    print(f"{len(cases)} cases")
+
+
+if __name__ == "__main__":
+    main()
