@@ -1,19 +1,18 @@
-//! Tells the square root in `real` whether the target CPU has a
-//! double-precision FPU: stable Rust does not expose ARM FPU features as
-//! `cfg(target_feature)`.
+//! Tells the square root in `real` whether the target CPU is a Cortex-M7 with its
+//! FPU: stable Rust does not expose ARM FPU features as `cfg(target_feature)`.
 
 use std::env;
 
 fn main() {
-    println!("cargo::rustc-check-cfg=cfg(fpu_f64)");
+    println!("cargo::rustc-check-cfg=cfg(fpu)");
     println!("cargo::rerun-if-changed=build.rs");
     let arch = env::var("CARGO_CFG_TARGET_ARCH").unwrap_or_default();
+    let abi = env::var("CARGO_CFG_TARGET_ABI").unwrap_or_default();
     let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
-    if arch == "arm"
-        && flags
-            .split('\x1f')
-            .any(|flag| flag.ends_with("target-cpu=cortex-m7"))
-    {
-        println!("cargo::rustc-cfg=fpu_f64");
+    let cortex_m7 = flags
+        .split('\x1f')
+        .any(|flag| flag.ends_with("target-cpu=cortex-m7"));
+    if arch == "arm" && abi == "eabihf" && cortex_m7 {
+        println!("cargo::rustc-cfg=fpu");
     }
 }

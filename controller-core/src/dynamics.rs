@@ -1,7 +1,7 @@
 //! Mass matrix, Christoffel Coriolis matrix and gravity torque, eq. (6):
 //! M ddq + C dq + g = tau - tau_ext.
 //!
-//! The sums run from flange to base over [`Moments`] about each joint's own
+//! The sums run from flange to base over moments of mass about each joint's own
 //! origin, so that a joint's own column has no lever arm and the small wrist
 //! inertias do not drown in the large moments about the base.
 //!

@@ -58,25 +58,43 @@ pub trait Real:
     }
 }
 
-/// Square root by the FPU where there is one: libm's is software on ARM.
-#[cfg(all(target_arch = "arm", fpu_f64))]
-#[inline(always)]
-#[allow(unsafe_code)]
-fn fpu_square_root(x: f64) -> f64 {
-    let root: f64;
-    // SAFETY: one register-to-register instruction; build.rs sets `fpu_f64`
-    // only where the target CPU has the double-precision FPU.
-    unsafe {
-        core::arch::asm!("vsqrt.f64 {0}, {1}", out(dreg) root, in(dreg) x, options(pure, nomem, nostack))
+/// Square root by the FPU's instruction on a Cortex-M7, where libm's is software;
+/// libm's elsewhere. Both round correctly, so the bits agree.
+macro_rules! square_root {
+    ($name:ident, $float:ident, $instruction:literal, $register:ident, $software:expr) => {
+        #[inline(always)]
+        fn $name(x: $float) -> $float {
+            #[cfg(fpu)]
+            #[allow(unsafe_code)]
+            {
+                let root: $float;
+                // SAFETY: one register-to-register instruction; build.rs sets
+                // the flag only where the target CPU has this FPU.
+                unsafe {
+                    core::arch::asm!($instruction, out($register) root, in($register) x,
+                        options(pure, nomem, nostack, preserves_flags));
+                }
+                root
+            }
+            #[cfg(not(fpu))]
+            $software(x)
+        }
     };
-    root
 }
-
-#[cfg(not(all(target_arch = "arm", fpu_f64)))]
-#[inline(always)]
-fn fpu_square_root(x: f64) -> f64 {
-    libm::sqrt(x)
-}
+square_root!(
+    square_root_f64,
+    f64,
+    "vsqrt.f64 {0}, {1}",
+    dreg_low16,
+    libm::sqrt
+);
+square_root!(
+    square_root_f32,
+    f32,
+    "vsqrt.f32 {0}, {1}",
+    sreg,
+    libm::sqrtf
+);
 
 /// One implementation per precision: same algorithm, constants of that precision.
 ///
@@ -210,7 +228,7 @@ mod constants {
               1.0 / 40_320.0, 1.0 / 362_880.0, 1.0 / 3_628_800.0, 1.0 / 39_916_800.0,
               1.0 / 479_001_600.0, 1.0 / 6_227_020_800.0],
         exp_range: 700.0, exponent_bias: 1023, mantissa: 52,
-        square_root: fpu_square_root);
+        square_root: square_root_f64);
 
     real!(f32, u32,
         round: 12_582_912.0,
@@ -220,7 +238,7 @@ mod constants {
         ln2: [0.693_115_234_375, 3.194_618_3e-5],
         exp: [1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5_040.0],
         exp_range: 85.0, exponent_bias: 127, mantissa: 23,
-        square_root: libm::sqrtf);
+        square_root: square_root_f32);
 }
 
 #[cfg(test)]
