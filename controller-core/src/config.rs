@@ -225,7 +225,7 @@ impl fmt::Display for ConfigError {
                      h lambda_max = {value:.3} at the posture"
                 )?;
                 for q in posture {
-                    write!(f, " {:.0}", q.to_degrees())?;
+                    write!(f, " {}", q.to_degrees() as i32)?;
                 }
                 write!(f, " deg; it must be below {bound}")
             }

@@ -52,6 +52,9 @@ enum Command {
     },
 }
 
+/// What the program can be asked for.
+const COMMANDS: &[&str] = &["run", "scenario", "explain"];
+
 /// Runs the program with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
@@ -91,7 +94,12 @@ fn explain_file(file: &std::path::Path) -> Result<String, Invalid> {
     } else {
         text = std::fs::read_to_string(file).map_err(readable)?;
     }
-    let output = explain(&text).map_err(|error| error.within(file.display()))?;
+    let place = if file.as_os_str() == "-" {
+        "standard input".into()
+    } else {
+        file.display().to_string()
+    };
+    let output = explain(&text).map_err(|error| error.within(place))?;
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;
     json.push('\n');
     Ok(json)

@@ -64,7 +64,7 @@ impl NullStiffness {
 }
 
 impl Named for NullStiffness {
-    const THING: &'static str = "null-space stiffness";
+    const THING: &'static str = "null stiffness";
     const ALL: &'static [(&'static str, Self)] = &[
         ("low", Self::Low),
         ("normal", Self::Normal),

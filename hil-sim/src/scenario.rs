@@ -13,7 +13,7 @@ use controller_core::law::{NullSpace, Posture};
 use controller_core::measurement::Reference;
 use controller_core::model::{ArmParameters, LWR_IV};
 use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use crate::contact::Contact;
 use crate::invalid::{Invalid, in_range, positive};
@@ -49,6 +49,7 @@ pub struct Scenario {
     /// Control cycle \[ms\].
     pub cycle_ms: f64,
     /// Posture at the start \[deg\], at rest; also q_d of the null space.
+    #[serde(deserialize_with = "joints")]
     pub start_deg: [f64; DOF],
     /// Task levels, highest priority first.
     #[serde(rename = "level")]
@@ -96,8 +97,10 @@ pub enum AxisGain {
 #[serde(deny_unknown_fields)]
 pub struct NullSpaceSpec {
     /// K_q \[Nm/rad\], diagonal.
+    #[serde(deserialize_with = "joints")]
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\], diagonal.
+    #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
     /// Where q_d comes from.
     #[serde(default)]
@@ -351,6 +354,17 @@ impl Scenario {
         };
         Origins(self.levels.iter().map(position).collect())
     }
+}
+
+/// Reads one number per joint, and says how many there are if not seven.
+pub(crate) fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
+    let values = Vec::<f64>::deserialize(deserializer)?;
+    let count = values.len();
+    values.try_into().map_err(|_| {
+        serde::de::Error::custom(format_args!(
+            "{count} values; allowed: {DOF}, joints 1 to {DOF}"
+        ))
+    })
 }
 
 /// Positions of the levels' points at the start \[m\], base-plate frame.

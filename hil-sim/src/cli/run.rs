@@ -35,7 +35,7 @@ pub struct RunOptions {
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
     /// Seed of mismatch and noise
-    #[arg(long, default_value_t = 1, value_parser = seed)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Length in s, up to 3600 [default: the scenario's]
     #[arg(long, value_parser = number, allow_negative_numbers = true)]
@@ -84,17 +84,12 @@ impl RunOptions {
             let [min, max] = CYCLE_RANGE_MS;
             scenario.cycle_ms = in_range("--cycle-ms", cycle, min, max)?;
         }
-        let option = |name: &'static str| move |error: Invalid| error.within(name);
         Ok(Experiment {
             scenario,
-            plant: PlantKind::from_name(&self.plant).map_err(option("--plant"))?,
-            contacts: Switch::from_name(&self.contacts)
-                .map_err(option("--contacts"))?
-                .0,
-            controller: ControllerKind::from_name(&self.controller)
-                .map_err(option("--controller"))?,
-            null_stiffness: NullStiffness::from_name(&self.null_stiffness)
-                .map_err(option("--null-stiffness"))?,
+            plant: PlantKind::from_name(&self.plant)?,
+            contacts: Switch::from_name(&self.contacts)?.0,
+            controller: ControllerKind::from_name(&self.controller)?,
+            null_stiffness: NullStiffness::from_name(&self.null_stiffness)?,
             seed: self.seed,
         })
     }
@@ -138,7 +133,6 @@ pub fn comparison() -> Result<u8, Invalid> {
 /// Runs an experiment and writes its files.
 fn execute(experiment: &Experiment, out: &Path) -> Result<Summary, Invalid> {
     let controller = experiment.controller()?;
-    warn_of_damping(experiment, &controller);
     output::prepare(out)?;
     let trace = Draft::create(out, "trace.csv")?;
     let mut file = Draft::create(out, "summary.json")?;
@@ -146,6 +140,8 @@ fn execute(experiment: &Experiment, out: &Path) -> Result<Summary, Invalid> {
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(&controller, trace, |share| progress.show(share));
     progress.clear();
+
+    warn_of_damping(experiment, &controller);
 
     let failed = |error: io::Error| Invalid::line(error).within(out.display());
     let (summary, trace) = written.map_err(failed)?;

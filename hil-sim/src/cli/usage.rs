@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use crate::invalid::Invalid;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// Prints help and version as they are, an error in one line.
@@ -30,16 +31,14 @@ fn line(error: &clap::Error) -> String {
     let given = context(ContextKind::InvalidArg).unwrap_or_default();
     let value = context(ContextKind::InvalidValue).unwrap_or_default();
     let nearest = context(ContextKind::SuggestedArg)
-        .or_else(|| context(ContextKind::SuggestedSubcommand))
-        .map(|name| format!(", did you mean '{name}'?"))
-        .unwrap_or_default();
+        .map_or(";".into(), |name| format!(", did you mean '{name}'?"));
     match error.kind() {
         ErrorKind::UnknownArgument => {
-            format!("unknown argument '{given}'{nearest} see 'hil-sim --help'")
+            format!("unknown argument '{given}'{nearest} allowed: see 'hil-sim --help'")
         }
         ErrorKind::InvalidSubcommand => {
             let given = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            format!("unknown command '{given}'{nearest} allowed: run, scenario, explain")
+            Invalid::name("command", &given, super::COMMANDS).to_string()
         }
         ErrorKind::ValueValidation | ErrorKind::InvalidValue if !value.is_empty() => {
             match std::error::Error::source(error) {
@@ -47,9 +46,13 @@ fn line(error: &clap::Error) -> String {
                 None => format!("{given}: '{value}'; see 'hil-sim --help'"),
             }
         }
-        ErrorKind::InvalidValue => format!("{given}: a value is missing"),
-        ErrorKind::MissingRequiredArgument => format!("missing: {given}"),
-        ErrorKind::ArgumentConflict => format!("{given}: given more than once"),
+        ErrorKind::InvalidValue => {
+            format!("{given}: a value is missing; allowed: see 'hil-sim --help'")
+        }
+        ErrorKind::MissingRequiredArgument => {
+            format!("missing argument: {given}; allowed: see 'hil-sim --help'")
+        }
+        ErrorKind::ArgumentConflict => format!("{given}: given more than once; allowed: once"),
         _ => error
             .to_string()
             .split_whitespace()

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::controllers::ControllerKind;
 use crate::invalid::{Invalid, in_range};
 use crate::names::Named;
-use crate::scenario::PointSpec;
+use crate::scenario::{PointSpec, joints};
 
 /// One control cycle. SI units, base-plate frame.
 #[derive(Clone, Debug, Deserialize)]
@@ -17,11 +17,13 @@ pub struct Input {
     /// Name of the arm.
     pub robot: String,
     /// q \[rad\].
+    #[serde(deserialize_with = "joints")]
     pub q: [f64; DOF],
     /// dq \[rad/s\].
+    #[serde(deserialize_with = "joints")]
     pub dq: [f64; DOF],
     /// r \[Nm\]; not read where `observer` is given.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "joints")]
     pub residual: [f64; DOF],
     /// Task levels, highest priority first.
     pub levels: Vec<Level>,
@@ -60,13 +62,16 @@ pub struct Level {
 #[serde(deny_unknown_fields)]
 pub struct NullSpace {
     /// q_d \[rad\].
+    #[serde(deserialize_with = "joints")]
     pub q_d: [f64; DOF],
     /// K_q \[Nm/rad\].
+    #[serde(deserialize_with = "joints")]
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\].
+    #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
     /// K of (14) \[1/s\], for the acceleration-level controllers.
-    #[serde(default = "default_rate_gain")]
+    #[serde(default = "default_rate_gain", deserialize_with = "joints")]
     pub rate_gain: [f64; DOF],
 }
 
@@ -79,12 +84,16 @@ fn default_rate_gain() -> [f64; DOF] {
 #[serde(deny_unknown_fields)]
 pub struct ObserverStep {
     /// p \[Nms\].
+    #[serde(deserialize_with = "joints")]
     pub momentum_prev: [f64; DOF],
     /// u = tau + C^T dq - g \[Nm\].
+    #[serde(deserialize_with = "joints")]
     pub input_prev: [f64; DOF],
     /// r \[Nm\].
+    #[serde(deserialize_with = "joints")]
     pub residual_prev: [f64; DOF],
     /// K_I \[1/s\].
+    #[serde(deserialize_with = "joints")]
     pub gain: [f64; DOF],
     /// Interval \[s\].
     pub h: f64,
@@ -99,11 +108,11 @@ impl Input {
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let input: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let path = error.path().to_string();
-            let message = error.into_inner();
+            let message = explained(text, &error.into_inner());
             if path == "." {
-                Invalid::line(message)
+                message
             } else {
-                Invalid::line(message).within(path)
+                message.within(path)
             }
         })?;
         deserializer
@@ -256,4 +265,26 @@ fn finite(name: &str, values: &[f64]) -> Result<(), Invalid> {
         Some(value) => Err(Invalid::new(name, value, "finite numbers")),
         None => Ok(()),
     }
+}
+
+/// A JSON error with the word it stumbled over: JSON has no NaN or Infinity.
+fn explained(text: &str, error: &serde_json::Error) -> Invalid {
+    let line = text
+        .lines()
+        .nth(error.line().saturating_sub(1))
+        .unwrap_or("");
+    let at = error.column().saturating_sub(1).min(line.len());
+    let delimiter = |c: char| c.is_whitespace() || "[]{},:\"".contains(c);
+    let (before, after) = line.split_at_checked(at).unwrap_or((line, ""));
+    let start = before.rfind(delimiter).map_or(0, |i| i + 1);
+    let end = after.find(delimiter).map_or(line.len(), |i| at + i);
+    let word = line.get(start..end).unwrap_or("");
+    if error.is_syntax() && !word.is_empty() {
+        return Invalid::new(
+            format_args!("'{word}'"),
+            error,
+            "finite JSON numbers and text in quotes",
+        );
+    }
+    Invalid::line(error)
 }

@@ -1,0 +1,205 @@
+//! What cannot be used gets one clear line on stderr, exit code 2, and leaves
+//! nothing behind. The lines are a snapshot: `snapshots/bad_input__*.snap`.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn hil_sim(folder: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // A program that refuses its arguments does not read its input.
+    let _ = child
+        .stdin
+        .take()
+        .expect("piped")
+        .write_all(input.as_bytes());
+    child.wait_with_output().expect("the program ends")
+}
+
+/// The line of a refused call. It must be the only one, and no file may be left.
+fn refusal(arguments: &[&str], input: &str) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("a-file"), "").expect("a file");
+    let output = hil_sim(folder.path(), arguments, input);
+    let stderr = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert_eq!(stderr.lines().count(), 1, "{arguments:?}: {stderr}");
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("readable")
+        .collect();
+    assert_eq!(left.len(), 1, "{arguments:?} left {left:?}");
+    stderr.trim_end().to_string()
+}
+
+#[test]
+fn arguments() {
+    let mut lines = String::new();
+    for arguments in [
+        "run",
+        "run two-levle",
+        "run nonsense",
+        "run missing.toml",
+        "run two-level --plant idael",
+        "run two-level --contacts maybe",
+        "run two-level --controller hierarchial",
+        "run two-level --null-stiffness soft",
+        "run two-level --seed -1",
+        "run two-level --seed 1.5",
+        "run two-level --duration NaN",
+        "run two-level --duration inf",
+        "run two-level --duration 0",
+        "run two-level --duration -3",
+        "run two-level --duration 3601",
+        "run two-level --duration ten",
+        "run two-level --cycle-ms 0.05",
+        "run two-level --cycle-ms 21",
+        "run two-level --cycle-ms NaN",
+        // Within the range of cycles, but not with this null-space damping.
+        "run two-level --cycle-ms 4",
+        "run two-level --sed 1",
+        "run two-level --seed",
+        "run two-level --seed 1 --seed 2",
+        "run two-level extra",
+        // A file where a folder should be.
+        "run two-level --out a-file",
+        "run two-level --out a-file/below",
+        "rnu two-level",
+        "--verbos",
+        "scenario tow-level",
+        "scenario",
+        "explain missing.json",
+    ] {
+        let words: Vec<_> = arguments.split(' ').collect();
+        writeln!(lines, "$ hil-sim {arguments}\n{}\n", refusal(&words, "")).expect("memory");
+    }
+    insta::assert_snapshot!(lines);
+}
+
+/// A level that is valid.
+const LEVEL: &str = r#"{"point": "flange", "axes": "xyz", "x": [0.4, 0, 0.7], "dx": [0, 0, 0], "ddx": [0, 0, 0],
+"kp": [400, 400, 400], "kd": [40, 40, 40]}"#;
+
+/// A state that is valid; the cases below change it.
+const STATE: &str = r#"{"robot": "lwr_iv", "q": [0, 0.6, 0, -1.4, 0.3, 1, 0], "dq": [0, 0, 0, 0, 0, 0, 0],
+"residual": [0, 0, 0, 0, 0, 0, 0],
+"levels": [{"point": "flange", "axes": "xyz", "x": [0.4, 0, 0.7], "dx": [0, 0, 0], "ddx": [0, 0, 0],
+"kp": [400, 400, 400], "kd": [40, 40, 40]}],
+"null_space": {"q_d": [0, 0, 0, 0, 0, 0, 0], "stiffness": [20, 20, 15, 15, 3, 2, 0.2],
+"damping": [4, 4, 3, 3, 0.4, 0.3, 0.03]}}"#;
+
+#[test]
+fn a_valid_state_is_explained() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(folder.path(), &["explain", "-"], STATE);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stdout.starts_with(b"{") && output.stderr.is_empty());
+}
+
+#[test]
+fn states() {
+    let many = [LEVEL; 3].join(", ");
+    let mut lines = String::new();
+    for (what, from, to) in [
+        ("not JSON", "{\"robot\"", "robot"),
+        ("cut off", "0.03]}}", "0.03]"),
+        ("something behind", "0.03]}}", "0.03]}} 1"),
+        ("unknown robot", "lwr_iv", "lwr_v"),
+        ("unknown point", "flange", "flagne"),
+        ("unknown axes", "\"xyz\"", "\"xzy\""),
+        ("no axes", "\"xyz\"", "\"\""),
+        ("unknown field", "\"residual\"", "\"residul\""),
+        (
+            "six joints",
+            "[0, 0.6, 0, -1.4, 0.3, 1, 0]",
+            "[0, 0.6, 0, -1.4, 0.3, 1]",
+        ),
+        (
+            "eight joints",
+            "[0, 0.6, 0, -1.4, 0.3, 1, 0]",
+            "[0, 0.6, 0, -1.4, 0.3, 1, 0, 0]",
+        ),
+        ("NaN", "-1.4", "NaN"),
+        ("infinite", "-1.4", "1e999"),
+        ("null", "-1.4", "null"),
+        ("text for a number", "-1.4", "\"-1.4\""),
+        ("joint beyond its limit", "-1.4", "-2.2"),
+        ("too few coordinates", "[0.4, 0, 0.7]", "[0.4, 0]"),
+        ("too many gains", "[400, 400, 400]", "[400, 400, 400, 400]"),
+        ("no levels", LEVEL, ""),
+        ("nine rows", LEVEL, &many),
+        (
+            "link 8",
+            "\"flange\"",
+            r#"{"link": 8, "offset_m": [0, 0, 0]}"#,
+        ),
+        (
+            "two offsets",
+            "\"flange\"",
+            r#"{"link": 7, "offset_m": [0, 0]}"#,
+        ),
+        (
+            "unknown controller",
+            "\"levels\"",
+            r#""controller": "no-obsever", "levels""#,
+        ),
+        (
+            "no interval",
+            "\"levels\"",
+            r#""observer": {"momentum_prev": [0,0,0,0,0,0,0], "input_prev": [0,0,0,0,0,0,0], "residual_prev": [0,0,0,0,0,0,0], "gain": [50,50,50,50,50,50,50], "h": 0}, "levels""#,
+        ),
+    ] {
+        let state = STATE.replacen(from, to, 1);
+        assert_ne!(state, STATE, "{what}");
+        writeln!(lines, "{what}\n{}\n", refusal(&["explain", "-"], &state)).expect("memory");
+    }
+    insta::assert_snapshot!(lines);
+}
+
+#[test]
+fn scenario_files() {
+    let good = {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let output = hil_sim(folder.path(), &["scenario", "two-level"], "");
+        String::from_utf8(output.stdout).expect("text")
+    };
+    let mut lines = String::new();
+    for (what, from, to) in [
+        (
+            "more than seven rows",
+            "[null_space]",
+            "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n[[level]]\npoint = \"elbow\"\naxes = \"xy\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n[null_space]",
+        ),
+        ("damping over the guard", "0.3, 0.03]", "0.3, 0.3]"),
+        (
+            "negative stiffness",
+            "stiffness = 400.0",
+            "stiffness = -400.0",
+        ),
+        ("NaN", "duration_s = 20.0", "duration_s = nan"),
+        ("unknown key", "duration_s", "duration"),
+        ("contact without length", "to_s = 6.0", "to_s = 3.0"),
+        ("unknown metric", "level1_rms_mm", "level2_rms_mm"),
+    ] {
+        let text = good.replacen(from, to, 1);
+        assert_ne!(text, good, "{what}");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(folder.path().join("changed.toml"), text).expect("a file");
+        let output = hil_sim(folder.path(), &["run", "changed.toml"], "");
+        let stderr = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(2), "{what}: {stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{what}: {stderr}");
+        assert!(!folder.path().join("out").exists(), "{what}");
+        writeln!(lines, "{what}\n{}\n", stderr.trim_end()).expect("memory");
+    }
+    insta::assert_snapshot!(lines);
+}
