@@ -126,6 +126,12 @@ impl<T: Real> Controller<T> {
         &self.tasks
     }
 
+    /// Compliance of what the tasks leave.
+    #[must_use]
+    pub fn null_space(&self) -> &NullSpace<T> {
+        &self.null_space
+    }
+
     /// The fastest null-space mode that the damping makes anywhere.
     #[must_use]
     pub fn fastest_mode(&self) -> DampingRate {
@@ -213,6 +219,7 @@ impl<T: Real> Controller<T> {
             rows: &rows,
             hierarchy: &hierarchy,
             motion: &motion,
+            posture: &posture,
             command: &command,
             residual: &residual,
         });

@@ -109,6 +109,7 @@ impl<T: Real> Command<T> {
 }
 
 /// Everything one cycle has computed when the law is applied.
+#[derive(Clone, Copy, Debug)]
 pub struct Cycle<'a, T: Real> {
     /// Measured joint state.
     pub state: &'a JointState<T>,
@@ -122,6 +123,8 @@ pub struct Cycle<'a, T: Real> {
     pub hierarchy: &'a Hierarchy<T>,
     /// Task and null-space parts of the motion.
     pub motion: &'a TaskMotion<T>,
+    /// q_d \[rad\] of this cycle.
+    pub posture: &'a JointVector<T>,
     /// Task accelerations and null-space force.
     pub command: &'a Command<T>,
     /// r \[Nm\].

@@ -1,64 +1,34 @@
 //! Contacts: forces of the environment on points of the arm.
 
-use controller_core::joint::{JointState, JointVector, Vector3};
-use serde::Deserialize;
+mod hand;
+mod push;
 
-use crate::invalid::{Invalid, in_range, positive};
+use controller_core::joint::{JointState, JointVector, Vector3};
+
+use crate::invalid::{Invalid, in_range};
 use crate::plant::PlantModel;
-use crate::scenario::PointSpec;
+
+pub use hand::{Direction, Hand};
+pub use push::Push;
 
 /// How long after a contact its effect still counts as inside \[s\].
 pub const AFTERMATH_S: f64 = 0.3;
 
-/// Length of the stretch before the force ramps down whose mean error is the plateau \[s\].
+/// Length of the stretch before the force goes down whose mean error is the plateau \[s\].
 pub const PLATEAU_S: f64 = 0.2;
 
-/// A scripted push: constant force between two linear ramps.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// Where the force acts.
-    pub point: PointSpec,
+/// When a contact acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
     /// Start \[s\].
     pub from_s: f64,
     /// End \[s\].
     pub to_s: f64,
-    /// Length of each ramp, inside the interval \[s\].
+    /// Time in which the force goes up and in which it goes down \[s\].
     pub ramp_s: f64,
-    /// Force on the arm \[N\], base-plate axes.
-    pub force_n: [f64; 3],
 }
 
-impl Contact {
-    /// Checks point, times and force.
-    ///
-    /// # Errors
-    /// What cannot be used.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        self.point.validate()?;
-        in_range("from_s", self.from_s, 0.0, 3600.0)?;
-        in_range("to_s", self.to_s, 0.0, 3600.0)?;
-        if self.to_s <= self.from_s {
-            return Err(Invalid::new(
-                "to_s",
-                self.to_s,
-                format_args!("above from_s = {}", self.from_s),
-            ));
-        }
-        let half = (self.to_s - self.from_s) / 2.0;
-        positive("ramp_s", self.ramp_s, half)?;
-        self.force_n
-            .iter()
-            .try_for_each(|&force| in_range("force_n", force, -1e4, 1e4).map(drop))
-    }
-
-    /// Force on the arm at time `t_s` \[N\].
-    #[must_use]
-    pub fn force(&self, t_s: f64) -> Vector3<f64> {
-        let ramp = ((t_s - self.from_s) / self.ramp_s).min((self.to_s - t_s) / self.ramp_s);
-        Vector3::from(self.force_n) * ramp.clamp(0.0, 1.0)
-    }
-
+impl Interval {
     /// Whether `t_s` belongs to the contact or its aftermath.
     #[must_use]
     pub fn inside(&self, t_s: f64) -> bool {
@@ -73,23 +43,100 @@ impl Contact {
     }
 }
 
-/// Joint torque of all contacts \[Nm\]: the sum of J^T F, which is -tau_ext of (6).
-#[must_use]
-pub fn joint_torque(
-    contacts: &[Contact],
-    t_s: f64,
-    plant: &PlantModel,
-    state: &JointState<f64>,
-) -> JointVector<f64> {
-    let mut torque = JointVector::zeros();
-    for contact in contacts {
-        let force = contact.force(t_s);
-        if force != Vector3::zeros() {
-            let point = contact.point.resolve();
-            torque += plant.point_torque(&state.q, point.link, &point.offset, &force);
+/// Checks start and end, gives the length \[s\].
+fn validate_times(from_s: f64, to_s: f64) -> Result<f64, Invalid> {
+    in_range("from_s", from_s, 0.0, 3600.0)?;
+    in_range("to_s", to_s, 0.0, 3600.0)?;
+    if to_s <= from_s {
+        return Err(Invalid::new(
+            "to_s",
+            to_s,
+            format_args!("above from_s = {from_s}"),
+        ));
+    }
+    Ok(to_s - from_s)
+}
+
+/// All contacts of a run, and what they remember: where a hand took hold.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    pushes: Vec<Push>,
+    hands: Vec<(Hand, Option<f64>)>,
+}
+
+impl Contacts {
+    /// Before the run.
+    #[must_use]
+    pub fn new(pushes: &[Push], hands: &[Hand]) -> Self {
+        Self {
+            pushes: pushes.to_vec(),
+            hands: hands.iter().map(|hand| (hand.clone(), None)).collect(),
         }
     }
-    torque
+
+    /// No contact at all.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::new(&[], &[])
+    }
+
+    /// The intervals, in the order of the scenario: pushes, then hands.
+    #[must_use]
+    pub fn intervals(&self) -> Vec<Interval> {
+        let pushes = self.pushes.iter().map(Push::interval);
+        pushes
+            .chain(self.hands.iter().map(|(hand, _)| hand.interval()))
+            .collect()
+    }
+
+    /// Whether hands take part.
+    #[must_use]
+    pub fn has_hands(&self) -> bool {
+        !self.hands.is_empty()
+    }
+
+    /// At a cycle instant: hands whose time has come take hold where the point is.
+    pub fn take_hold(&mut self, t_s: f64, plant: &PlantModel, state: &JointState<f64>) {
+        for (hand, origin) in &mut self.hands {
+            if origin.is_none() && t_s >= hand.from_s {
+                let point = hand.point.resolve();
+                let (x, _) = plant.point(state, point.link, &point.offset);
+                *origin = Some(hand.along(&x));
+            }
+        }
+    }
+
+    /// Joint torque of all contacts \[Nm\]: the sum of J^T F, which is -tau_ext of
+    /// (6); and the largest force of a hand \[N\].
+    #[must_use]
+    pub fn joint_torque(
+        &self,
+        t_s: f64,
+        plant: &PlantModel,
+        state: &JointState<f64>,
+    ) -> (JointVector<f64>, f64) {
+        let mut torque = JointVector::zeros();
+        let mut hand_force = 0.0f64;
+        for push in &self.pushes {
+            let force = push.force(t_s);
+            if force != Vector3::zeros() {
+                let point = push.point.resolve();
+                torque += plant.point_torque(&state.q, point.link, &point.offset, &force);
+            }
+        }
+        for (hand, origin) in &self.hands {
+            let Some(origin) = *origin else { continue };
+            let point = hand.point.resolve();
+            let (x, dx) = plant.point(state, point.link, &point.offset);
+            let size = hand.size(t_s, origin, &x, &dx);
+            if size > 0.0 {
+                let force = hand.vector(size);
+                torque += plant.point_torque(&state.q, point.link, &point.offset, &force);
+                hand_force = hand_force.max(size);
+            }
+        }
+        (torque, hand_force)
+    }
 }
 
 #[cfg(test)]
@@ -97,27 +144,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_force_ramps_inside_its_interval() {
-        let contact = Contact {
-            point: PointSpec::Name("elbow".into()),
+    fn an_interval_has_a_plateau_and_an_aftermath() {
+        let interval = Interval {
             from_s: 3.0,
             to_s: 6.0,
             ramp_s: 0.3,
-            force_n: [0.0, 35.0, 0.0],
         };
-        for (t, share) in [
-            (2.9, 0.0),
-            (3.0, 0.0),
-            (3.15, 0.5),
-            (3.3, 1.0),
-            (5.7, 1.0),
-            (5.85, 0.5),
-            (6.0, 0.0),
-            (7.0, 0.0),
-        ] {
-            assert!((contact.force(t).y - 35.0 * share).abs() < 1e-9, "{t}");
-        }
-        assert!(contact.plateau(5.6) && !contact.plateau(5.4) && !contact.plateau(5.8));
-        assert!(contact.inside(6.2) && !contact.inside(6.4));
+        assert!(interval.plateau(5.6) && !interval.plateau(5.4) && !interval.plateau(5.8));
+        assert!(interval.inside(6.2) && !interval.inside(6.4) && !interval.inside(2.9));
     }
 }

@@ -2,9 +2,10 @@
 //! others, all inside the core's cycle with its checks, observer and limits.
 
 use controller_core::hierarchy::Hierarchy;
-use controller_core::joint::JointVector;
-use controller_core::law::{Cycle, TorqueDemand};
+use controller_core::joint::{JointMatrix, JointVector};
+use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
 use controller_core::linalg::Cholesky;
+use controller_core::task::{MAX_ROWS, TaskRows};
 
 use crate::names::Named;
 
@@ -16,10 +17,17 @@ pub enum ControllerKind {
     Hierarchical,
     /// The same with r = 0 in the law.
     NoObserver,
+    /// (32)-(34) as printed, without the coupling between moving levels, but
+    /// with the stable sign of the null-space stiffness.
+    Literal,
+    /// (32)-(34) as printed, with the printed sign: the null space is unstable.
+    AsPrinted,
     /// Acceleration-level priorities (7)-(9), (12)-(14) with Moore-Penrose
     /// inverses: a null space with rate but without stiffness, and no estimate
     /// of the external torque.
     AccelerationLevel,
+    /// The same with tau_est = -r.
+    AccelerationLevelEstimate,
 }
 
 impl Named for ControllerKind {
@@ -27,19 +35,41 @@ impl Named for ControllerKind {
     const ALL: &'static [(&'static str, Self)] = &[
         ("hierarchical", Self::Hierarchical),
         ("no-observer", Self::NoObserver),
+        ("literal", Self::Literal),
+        ("as-printed", Self::AsPrinted),
         ("acceleration-level", Self::AccelerationLevel),
+        (
+            "acceleration-level-estimate",
+            Self::AccelerationLevelEstimate,
+        ),
     ];
 }
 
+/// Gains that a law needs besides what the cycle has applied already.
+#[derive(Clone, Copy, Debug)]
+pub struct LawGains {
+    /// K of (14) \[1/s\] per joint, for the acceleration-level laws.
+    pub rate: JointVector<f64>,
+    /// K_q \[Nm/rad\], for the law that reverses its sign.
+    pub stiffness: JointMatrix<f64>,
+}
+
 impl ControllerKind {
-    /// The torque demanded by this law. `rate_gain` is K of (14) \[1/s\] per
-    /// joint, read by the acceleration-level law only.
+    /// The torque demanded by this law.
     #[must_use]
-    pub fn demand(self, cycle: &Cycle<'_, f64>, rate_gain: &JointVector<f64>) -> TorqueDemand<f64> {
+    pub fn demand(self, cycle: &Cycle<'_, f64>, gains: &LawGains) -> TorqueDemand<f64> {
         match self {
             Self::Hierarchical => TorqueDemand::hierarchical(cycle),
             Self::NoObserver => TorqueDemand::compensating(cycle, &JointVector::zeros()),
-            Self::AccelerationLevel => acceleration_level(cycle, rate_gain),
+            Self::Literal => literal(cycle, cycle.command.null_force),
+            Self::AsPrinted => {
+                let stiffness = gains.stiffness * (cycle.posture - cycle.state.q);
+                literal(cycle, cycle.command.null_force - stiffness * 2.0)
+            }
+            Self::AccelerationLevel => acceleration_level(cycle, &gains.rate),
+            Self::AccelerationLevelEstimate => {
+                TorqueDemand(acceleration_level(cycle, &gains.rate).0 - cycle.residual)
+            }
         }
     }
 
@@ -47,15 +77,69 @@ impl ControllerKind {
     #[must_use]
     pub fn residual_compensation(self, cycle: &Cycle<'_, f64>) -> JointVector<f64> {
         match self {
-            Self::Hierarchical => {
+            Self::Hierarchical | Self::Literal | Self::AsPrinted => {
                 let (hierarchy, cholesky) = (cycle.hierarchy, &cycle.dynamics.cholesky);
                 let whitened = hierarchy.rotate(&cholesky.solve_lower(cycle.residual));
                 let task = hierarchy.rotate_back(&hierarchy.task_part(&whitened));
                 -cholesky.lower_times(&task)
             }
             Self::NoObserver | Self::AccelerationLevel => JointVector::zeros(),
+            Self::AccelerationLevelEstimate => -cycle.residual,
         }
     }
+}
+
+/// (34) as printed: every level is given d(Jbar_i dq)/dt = its command, as if
+/// the levels above it stood still.
+fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> TorqueDemand<f64> {
+    let mut wanted = cycle.rows.wanted;
+    for (wanted, bias) in wanted.iter_mut().zip(jbar_dot_dq(cycle)) {
+        *wanted -= bias;
+    }
+    let command = Command {
+        task_acceleration: cycle.hierarchy.solve_uncoupled(&wanted),
+        null_force,
+    };
+    TorqueDemand::hierarchical(&Cycle {
+        command: &command,
+        ..*cycle
+    })
+}
+
+/// (dJbar_i/dt) dq per row \[m/s2\].
+///
+/// Jbar_i = J_i N with N = 1 - P the projector that the levels above leave, and
+/// P = M^-1 J^T Lambda J of their stacked rows J. Differentiating P gives, with
+/// F = Lambda J dq, w = P dq, n = N dq and u = M^-1 ((dJ/dt)^T F - (dM/dt) w),
+/// (dN/dt) dq = -N u - J^# (dJ/dt) n, and dM/dt = C + C^T.
+fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
+    let (rows, dynamics, dq) = (cycle.rows, cycle.dynamics, &cycle.state.dq);
+    let cholesky = &dynamics.cholesky;
+    let mut bias = rows.bias;
+    for row in 0..rows.count {
+        let above = TaskRows {
+            count: rows.level_start[row],
+            ..*rows
+        };
+        if above.count == 0 {
+            continue;
+        }
+        let hierarchy = Hierarchy::new(&above, cholesky);
+        let motion = TaskMotion::new(dynamics, &hierarchy, cycle.state);
+        let (w, n) = (motion.task_velocity, motion.null_velocity);
+        let mut transport = -(dynamics.coriolis_matrix * w + dynamics.coriolis_transpose_times(&w));
+        let mut turning = [0.0; MAX_ROWS];
+        for k in 0..above.count {
+            transport += rows.jacobian_dot[k] * motion.task_momentum[k];
+            turning[k] = rows.jacobian_dot[k].dot(&n);
+        }
+        // N u in whitened coordinates is the null part of L^-1 (...).
+        let free = hierarchy.null_part(&hierarchy.rotate(&cholesky.solve_lower(&transport)));
+        let seen = hierarchy.solve(&turning);
+        let projector_rate = -cholesky.solve_upper(&hierarchy.rotate_back(&(free + seen)));
+        bias[row] = rows.jacobian_dot[row].dot(&(dq - w)) + rows.jacobian[row].dot(&projector_rate);
+    }
+    bias
 }
 
 /// tau = M (sum of (J_i N)^# (b_i - J_i sum ddq_j) - N K dq) + C dq + g.

@@ -9,8 +9,8 @@ use controller_core::measurement::{Measurement, Reference, SPEED_FACTOR};
 use controller_core::model::ArmModel;
 use controller_core::task::Axes;
 
-use crate::contact::{self, Contact};
-use crate::controllers::ControllerKind;
+use crate::contact::Contacts;
+use crate::controllers::{ControllerKind, LawGains};
 use crate::invalid::Invalid;
 use crate::metrics::{FaultCounts, Metrics, Sample};
 use crate::names::{Named, NullStiffness};
@@ -69,13 +69,16 @@ impl Experiment {
     ) -> io::Result<(Summary, W)> {
         let scenario = &self.scenario;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
-        let contacts: &[Contact] = if self.contacts {
-            &scenario.contacts
+        let mut contacts = if self.contacts {
+            scenario.contacts()
         } else {
-            &[]
+            Contacts::none()
         };
         let origins = scenario.origins();
-        let rate_gain = JointVector::repeat(scenario.null_space.rate_gain);
+        let gains = LawGains {
+            rate: JointVector::repeat(scenario.null_space.rate_gain),
+            stiffness: controller.null_space().stiffness,
+        };
         let mut plant = Plant::new(
             self.plant,
             scenario.arm(),
@@ -86,7 +89,7 @@ impl Experiment {
         let mut state = ControllerState::new();
         let mut metrics = Metrics::new(
             scenario.levels.len(),
-            contacts,
+            &contacts.intervals(),
             controller.model().position_limit(),
         );
         let mut trace = Trace::new(trace, scenario)?;
@@ -107,14 +110,15 @@ impl Experiment {
             };
             let reference = scenario.reference(&origins, t_s);
             let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
-                self.controller.demand(cycle, &rate_gain)
+                self.controller.demand(cycle, &gains)
             });
             stop = step.status.fault.map(Stop::Fault);
             if stop.is_some() {
                 break;
             }
 
-            let contact_torque = contact::joint_torque(contacts, t_s, plant.model(), &truth);
+            contacts.take_hold(t_s, plant.model(), &truth);
+            let (contact_torque, hand_force) = contacts.joint_torque(t_s, plant.model(), &truth);
             let levels = self.level_rows(&plant, &truth, &reference);
             let errors: Vec<_> = levels.iter().map(|level| level.error).collect();
             metrics.add(&Sample {
@@ -122,6 +126,7 @@ impl Experiment {
                 state: &truth,
                 errors: &errors,
                 contact_torque: &contact_torque,
+                hand_force,
                 step: &step,
             });
             trace.push(&Row {
@@ -133,13 +138,13 @@ impl Experiment {
                 levels: &levels,
             })?;
             plant.advance(t_s, &step.torque, |t, model, state| {
-                contact::joint_torque(contacts, t, model, state)
+                contacts.joint_torque(t, model, state).0
             });
             if cycle % 512 == 0 {
                 progress(cycle as f64 / cycles as f64);
             }
         }
-        Ok((self.summary(&metrics, stop), trace.finish()))
+        Ok((self.summary(&metrics, &contacts, stop), trace.finish()))
     }
 
     /// Desired and true coordinates of every level.
@@ -167,7 +172,7 @@ impl Experiment {
             .collect()
     }
 
-    fn summary(&self, metrics: &Metrics, stop: Option<Stop>) -> Summary {
+    fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {
         let scenario = &self.scenario;
         let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
         let levels = metrics.levels(&names);
@@ -200,7 +205,7 @@ impl Experiment {
             residual: metrics.residual(),
             torque: metrics.torque(),
             joints: metrics.joints(),
-            hand_force_max_n: None,
+            hand_force_max_n: contacts.has_hands().then(|| metrics.hand_force()),
             limits: metrics.limits(),
             faults,
         }

@@ -13,6 +13,7 @@ use controller_core::model::ArmModel;
 use controller_core::observer::Observer;
 use controller_core::task::TaskRows;
 
+use crate::controllers::LawGains;
 use crate::invalid::Invalid;
 
 pub use input::Input;
@@ -67,11 +68,16 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
         rows: &rows,
         hierarchy: &hierarchy,
         motion: &motion,
+        posture: &posture,
         command: &command,
         residual: &residual,
     };
     let controller = input.controller();
-    let demand = controller.demand(&cycle, &input.null_space.rate_gain.into());
+    let gains = LawGains {
+        rate: input.null_space.rate_gain.into(),
+        stiffness: null_space.stiffness,
+    };
+    let demand = controller.demand(&cycle, &gains);
     let limited = TorqueCommand::new(&demand, model.torque_limit())
         .map_err(|fault| Invalid::line(fault).within("the torque of this state"))?;
     Ok(Output::new(

@@ -4,7 +4,7 @@ use controller_core::controller::Step;
 use controller_core::joint::{DOF, JointState, JointVector};
 use serde::Serialize;
 
-use crate::contact::Contact;
+use crate::contact::Interval;
 use crate::invalid::Invalid;
 
 /// A figure that an acceptance limit can name.
@@ -179,6 +179,8 @@ pub struct Sample<'a> {
     pub errors: &'a [f64],
     /// Joint torque of the contacts \[Nm\], -tau_ext.
     pub contact_torque: &'a JointVector<f64>,
+    /// Largest force of a hand \[N\].
+    pub hand_force: f64,
     /// Result of the control cycle.
     pub step: &'a Step<f64>,
 }
@@ -186,7 +188,7 @@ pub struct Sample<'a> {
 /// Running figures of a run.
 #[derive(Clone, Debug)]
 pub struct Metrics {
-    contacts: Vec<Contact>,
+    contacts: Vec<Interval>,
     levels: Vec<LevelSums>,
     residual_error: Rms,
     residual: Rms,
@@ -195,13 +197,14 @@ pub struct Metrics {
     highest: [f64; DOF],
     limits: LimitCounts,
     position_limit: JointVector<f64>,
+    hand_force: f64,
     cycles: usize,
 }
 
 impl Metrics {
     /// No cycle yet. `position_limit` \[rad\] is where a joint counts as beyond its range.
     #[must_use]
-    pub fn new(levels: usize, contacts: &[Contact], position_limit: &JointVector<f64>) -> Self {
+    pub fn new(levels: usize, contacts: &[Interval], position_limit: &JointVector<f64>) -> Self {
         let sums = LevelSums {
             plateaus: vec![Mean::default(); contacts.len()],
             ..LevelSums::default()
@@ -216,6 +219,7 @@ impl Metrics {
             highest: [f64::NEG_INFINITY; DOF],
             limits: LimitCounts::default(),
             position_limit: *position_limit,
+            hand_force: 0.0,
             cycles: 0,
         }
     }
@@ -223,6 +227,7 @@ impl Metrics {
     /// Adds a cycle.
     pub fn add(&mut self, sample: &Sample<'_>) {
         self.cycles += 1;
+        self.hand_force = self.hand_force.max(sample.hand_force);
         let inside = self
             .contacts
             .iter()
@@ -308,6 +313,12 @@ impl Metrics {
         JointFigures {
             range_deg: std::array::from_fn(range),
         }
+    }
+
+    /// Largest force of a hand \[N\].
+    #[must_use]
+    pub fn hand_force(&self) -> f64 {
+        self.hand_force
     }
 
     /// Limit counts.

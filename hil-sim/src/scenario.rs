@@ -15,7 +15,7 @@ use controller_core::model::{ArmParameters, LWR_IV};
 use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task};
 use serde::{Deserialize, Deserializer};
 
-use crate::contact::Contact;
+use crate::contact::{Contacts, Hand, Push};
 use crate::invalid::{Invalid, in_range, positive};
 use crate::metrics::Metric;
 use crate::names::Named;
@@ -25,7 +25,12 @@ pub use point::PointSpec;
 pub use reference::ReferenceSpec;
 
 /// The scenarios that come with the program: name and TOML text.
-pub const BUILT_IN: &[(&str, &str)] = &[("two-level", include_str!("../scenarios/two-level.toml"))];
+pub const BUILT_IN: &[(&str, &str)] = &[
+    ("two-level", include_str!("../scenarios/two-level.toml")),
+    ("case-1", include_str!("../scenarios/case-1.toml")),
+    ("case-2", include_str!("../scenarios/case-2.toml")),
+    ("hand", include_str!("../scenarios/hand.toml")),
+];
 
 /// Longest experiment \[s\].
 pub const DURATION_MAX_S: f64 = 3600.0;
@@ -58,9 +63,12 @@ pub struct Scenario {
     pub null_space: NullSpaceSpec,
     /// External-torque observer.
     pub observer: ObserverSpec,
-    /// Pushes by a person or an obstacle.
+    /// Scripted pushes.
     #[serde(rename = "contact", default)]
-    pub contacts: Vec<Contact>,
+    pub pushes: Vec<Push>,
+    /// Hands of a person, which give way.
+    #[serde(rename = "hand", default)]
+    pub hands: Vec<Hand>,
     /// What a run must stay below.
     #[serde(rename = "limit", default)]
     pub limits: Vec<Limit>,
@@ -269,10 +277,13 @@ impl Scenario {
             GAIN_MAX,
         )?;
         positive("observer.gain", self.observer.gain, GAIN_MAX)?;
-        for (number, contact) in (1..).zip(&self.contacts) {
-            contact
-                .validate()
+        for (number, push) in (1..).zip(&self.pushes) {
+            push.validate()
                 .map_err(|error| error.within(format_args!("contact {number}")))?;
+        }
+        for (number, hand) in (1..).zip(&self.hands) {
+            hand.validate()
+                .map_err(|error| error.within(format_args!("hand {number}")))?;
         }
         for (number, limit) in (1..).zip(&self.limits) {
             let place = |error: Invalid| error.within(format_args!("limit {number}"));
@@ -326,6 +337,12 @@ impl Scenario {
             cycle_s: self.cycle_s(),
             dead_cycles: 0,
         }
+    }
+
+    /// Pushes and hands, before the run.
+    #[must_use]
+    pub fn contacts(&self) -> Contacts {
+        Contacts::new(&self.pushes, &self.hands)
     }
 
     /// The reference at time `t_s`, about the points' positions at the start.

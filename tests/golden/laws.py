@@ -28,8 +28,16 @@ LEVELS = {
     "six rows": [("flange", "xyz"), ("elbow", "x"), ("wrist", "yz")],
     "single rows": [("wrist", "z"), ("flange", "y"), ("elbow", "x"), ("forearm", "z")],
 }
-CONTROLLERS = ["hierarchical", "no-observer", "acceleration-level"]
-CASES_EACH = 6
+CONTROLLERS = [
+    "hierarchical",
+    "no-observer",
+    "literal",
+    "as-printed",
+    "acceleration-level",
+    "acceleration-level-estimate",
+]
+CASES_EACH = 4
+STEP = 1e-3  # s, for derivatives along the motion; errors are of order STEP^4
 
 
 def null_basis(rows):
@@ -83,17 +91,36 @@ def observer_step(step, momentum):
     return decay * np.array(step["residual_prev"]) + (1.0 - decay) * rate
 
 
-def hierarchical(m, c, g, levels, state, residual):
-    """(34) in its exact form, on joint level."""
+def jbar_rates(model, data, arm, state):
+    """dJbar_i/dt of every level, by differences along the motion."""
+
+    def jbars(shift):
+        moved = dict(state, q=np.array(state["q"]) + shift * np.array(state["dq"]))
+        m, _, _, levels = terms(model, data, arm, moved)
+        projected(m, levels)
+        return [level["jbar"] for level in levels]
+
+    ahead, behind, far_ahead, far_behind = (jbars(k * STEP) for k in (1, -1, 2, -2))
+    return [
+        (8.0 * (a - b) - (fa - fb)) / (12.0 * STEP)
+        for a, b, fa, fb in zip(ahead, behind, far_ahead, far_behind)
+    ]
+
+
+def hierarchical(m, c, g, levels, state, residual, rates=None, stiffness_sign=1.0):
+    """(34) on joint level: exact, or as printed where dJbar_i/dt are given."""
     dq, space = np.array(state["dq"]), state["null_space"]
     minv = np.linalg.inv(m)
     stack = projected(m, levels)
     derivative = np.vstack([level["jdot"] for level in levels])
     ddq, w, free = np.zeros(DOF), np.zeros(DOF), np.eye(DOF)
     compensation = np.zeros(DOF)
-    for level in levels:
-        wanted = level["command"] - level["jdot"] @ dq
-        ddq = ddq + level["pinv"] @ (wanted - level["j"] @ ddq)
+    for number, level in enumerate(levels):
+        if rates is None:
+            wanted = level["command"] - level["jdot"] @ dq
+            ddq = ddq + level["pinv"] @ (wanted - level["j"] @ ddq)
+        else:
+            ddq = ddq + level["pinv"] @ (level["command"] - rates[number] @ dq)
         w = w + level["pinv"] @ level["jbar"] @ dq
         free = free - level["pinv"] @ level["jbar"]
         compensation -= level["jbar"].T @ level["lam"] @ level["jbar"] @ minv @ residual
@@ -102,7 +129,9 @@ def hierarchical(m, c, g, levels, state, residual):
         -c @ dq
         - c.T @ w
         + derivative.T @ momentum
-        + np.array(space["stiffness"]) * (np.array(space["q_d"]) - np.array(state["q"]))
+        + stiffness_sign
+        * np.array(space["stiffness"])
+        * (np.array(space["q_d"]) - np.array(state["q"]))
         - np.array(space["damping"]) * (dq - w)
     )
     return m @ ddq + compensation + free.T @ force + c @ dq + g, compensation, free
@@ -126,10 +155,21 @@ def expected(model, data, arm, state):
     residual = np.array(state["residual"])
     if "observer" in state:
         residual = observer_step(state["observer"], m @ dq)
-    in_law = residual if state["controller"] == "hierarchical" else np.zeros(DOF)
-    torque, compensation, free = hierarchical(m, c, g, levels, state, in_law)
-    if state["controller"] == "acceleration-level":
-        torque = acceleration_level(m, c, g, levels, state)
+    law = state["controller"]
+    printed = law in ("literal", "as-printed")
+    torque, compensation, free = hierarchical(
+        m,
+        c,
+        g,
+        levels,
+        state,
+        np.zeros(DOF) if law == "no-observer" else residual,
+        jbar_rates(model, data, arm, state) if printed else None,
+        -1.0 if law == "as-printed" else 1.0,
+    )
+    if law.startswith("acceleration-level"):
+        compensation = -residual if law.endswith("estimate") else np.zeros(DOF)
+        torque = acceleration_level(m, c, g, levels, state) + compensation
     limit = column(arm, "torque_limit")
     return {
         "mass_matrix": m,

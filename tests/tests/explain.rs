@@ -55,7 +55,7 @@ fn compare(path: &str, given: &Value, expected: &Value, worst: &mut f64) {
 fn every_quantity_agrees_with_the_explicit_formulas() {
     let golden: Value = serde_json::from_str(&file("laws.json")).expect("laws.json");
     let cases = golden["cases"].as_array().expect("cases");
-    assert_eq!(cases.len(), 72);
+    assert_eq!(cases.len(), 96);
     let mut worst = 0.0;
     for case in cases {
         let input = &case["input"];

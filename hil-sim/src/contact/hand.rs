@@ -1,0 +1,97 @@
+//! A person's hand: a spring and damper along one direction, whose far end
+//! moves away and comes back, and which only pushes.
+
+use controller_core::joint::Vector3;
+use controller_core::trajectory::quintic;
+use serde::Deserialize;
+
+use super::Interval;
+use crate::invalid::{Invalid, in_range, positive};
+use crate::scenario::PointSpec;
+
+/// F = max(0, k (y0 + travel b((t - from) / approach) b((to - t) / approach) - y) - d dy),
+/// y the point's coordinate along `direction`, y0 its value at the start.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hand {
+    /// Where the hand lies.
+    pub point: PointSpec,
+    /// Start \[s\].
+    pub from_s: f64,
+    /// End \[s\].
+    pub to_s: f64,
+    /// Base-plate axis along which it pushes.
+    pub direction: Direction,
+    /// k \[N/m\].
+    pub stiffness_n_m: f64,
+    /// d \[Ns/m\].
+    pub damping_ns_m: f64,
+    /// How far the hand moves \[m\].
+    pub travel_m: f64,
+    /// Time to move there, and to go back \[s\].
+    pub approach_s: f64,
+}
+
+/// A base-plate axis.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+    /// Up.
+    Z,
+}
+
+impl Hand {
+    /// Checks point, times, spring and damper.
+    ///
+    /// # Errors
+    /// What cannot be used.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        self.point.validate()?;
+        let half = super::validate_times(self.from_s, self.to_s)? / 2.0;
+        positive("approach_s", self.approach_s, half)?;
+        positive("stiffness_n_m", self.stiffness_n_m, 1e5)?;
+        in_range("damping_ns_m", self.damping_ns_m, 0.0, 1e4)?;
+        in_range("travel_m", self.travel_m, -1.0, 1.0).map(drop)
+    }
+
+    /// When it acts.
+    #[must_use]
+    pub fn interval(&self) -> Interval {
+        Interval {
+            from_s: self.from_s,
+            to_s: self.to_s,
+            ramp_s: self.approach_s,
+        }
+    }
+
+    /// Coordinate along the direction.
+    #[must_use]
+    pub fn along(&self, v: &Vector3<f64>) -> f64 {
+        v[self.direction as usize]
+    }
+
+    /// Size of the force at time `t_s` \[N\], with the point at `x` \[m\], moving with
+    /// `dx` \[m/s\], and `origin` its coordinate at the start \[m\].
+    #[must_use]
+    pub fn size(&self, t_s: f64, origin: f64, x: &Vector3<f64>, dx: &Vector3<f64>) -> f64 {
+        if t_s < self.from_s || t_s > self.to_s {
+            return 0.0;
+        }
+        let [there, ..] = quintic((t_s - self.from_s) / self.approach_s);
+        let [back, ..] = quintic((self.to_s - t_s) / self.approach_s);
+        let stretch = origin + self.travel_m * there * back - self.along(x);
+        (self.stiffness_n_m * stretch - self.damping_ns_m * self.along(dx)).max(0.0)
+    }
+
+    /// That force as a vector \[N\], base-plate axes.
+    #[must_use]
+    pub fn vector(&self, size: f64) -> Vector3<f64> {
+        let mut force = Vector3::zeros();
+        force[self.direction as usize] = size;
+        force
+    }
+}
