@@ -4,7 +4,7 @@ use core::fmt;
 
 use heapless::Vec;
 
-use crate::damping::{self, DEAD_TIME_BOUND, DIRECT_BOUND, DampingRate};
+use crate::damping::{self, DampingRate};
 use crate::joint::{DOF, JointMatrix, JointVector, Matrix3};
 use crate::law::NullSpace;
 use crate::linalg::Cholesky;
@@ -30,7 +30,8 @@ pub struct ControllerConfig<T: Real> {
     /// Nominal cycle \[s\].
     pub cycle_s: T,
     /// Cycles between a measurement and the moment its torque acts, beyond the
-    /// zero-order hold: 0 for a direct link. Halves the damping that is allowed.
+    /// zero-order hold: 0 for a direct link. Lowers the damping that is allowed,
+    /// see [`damping::bound`].
     pub dead_cycles: u8,
 }
 
@@ -225,9 +226,9 @@ impl fmt::Display for ConfigError {
                      h lambda_max = {value:.3} at the posture"
                 )?;
                 for q in posture {
-                    write!(f, " {}", q.to_degrees() as i32)?;
+                    write!(f, " {}", (q.to_degrees() + 0.5).floor_small() as i32)?;
                 }
-                write!(f, " deg; it must be below {bound}")
+                write!(f, " deg; it must be below {bound:.3}")
             }
         }
     }
@@ -271,11 +272,7 @@ impl<T: Real> ControllerConfig<T> {
     /// What h lambda must stay below.
     #[must_use]
     pub fn damping_bound(&self) -> f64 {
-        if self.dead_cycles == 0 {
-            DIRECT_BOUND
-        } else {
-            DEAD_TIME_BOUND
-        }
+        damping::bound(self.dead_cycles)
     }
 
     fn validate_damping(&self, model: &ArmModel<T>) -> Result<DampingRate, ConfigError> {

@@ -3,7 +3,7 @@
 //! A joint-space damping D acts on the mass matrix M through a zero-order hold:
 //! a mode of M^-1 D with the rate lambda is multiplied by 1 - h lambda every
 //! cycle, which is unstable for h lambda > 2, and for h lambda > 1 where a cycle
-//! of dead time lies between measurement and torque. The wrist of the arm is so
+//! of dead time lies between measurement and torque ([`bound`]). The wrist of the arm is so
 //! light that ordinary values exceed this. M depends on the posture, so the
 //! guard takes the largest rate over a fixed set of postures that contains, for
 //! the damping of each single joint and for the reference damping, the worst
@@ -16,11 +16,15 @@ use crate::linalg::largest_eigenpair;
 use crate::model::ArmModel;
 use crate::real::Real;
 
-/// The bound on h lambda without dead time.
-pub const DIRECT_BOUND: f64 = 2.0;
-
-/// The bound on h lambda with a cycle or more of dead time.
-pub const DEAD_TIME_BOUND: f64 = 1.0;
+/// What h lambda must stay below with `dead_cycles` cycles between measurement
+/// and torque: 2 cos(d pi / (2 d + 1)), where z^(d+1) - z^d + h lambda = 0 leaves
+/// the unit circle. 2 without dead time, 1 with one cycle, 0.618 with two.
+#[must_use]
+pub fn bound(dead_cycles: u8) -> f64 {
+    let d = f64::from(dead_cycles);
+    let (_, cosine) = (d * core::f64::consts::PI / (2.0 * d + 1.0)).sine_cosine();
+    2.0 * cosine
+}
 
 /// Postures \[deg\] at which the damping is checked: the worst one found for the
 /// reference damping, for the damping of each single joint and for equal

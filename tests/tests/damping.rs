@@ -3,7 +3,7 @@
 
 use controller_core::config::{ConfigError, ControllerConfig};
 use controller_core::controller::Controller;
-use controller_core::damping::{fastest_mode, mode_at};
+use controller_core::damping::{bound, fastest_mode, mode_at};
 use controller_core::joint::{JointMatrix, diagonal};
 use hil_sim::plant::noise::Rng;
 use stratum_tests::config::{REFERENCE_DAMPING, two_level};
@@ -74,14 +74,16 @@ fn reference_damping_passes_the_direct_bound_and_not_the_dead_time_bound() {
         ..direct
     };
     match Controller::new(&model, &delayed) {
-        Err(ConfigError::Damping { value, bound, .. }) => assert!(value > 1.0 && bound == 1.0),
+        Err(ConfigError::Damping { value, bound, .. }) => {
+            assert!(value > bound && (bound - 1.0).abs() < 1e-12)
+        }
         other => panic!("{other:?}"),
     }
 }
 
 /// The sampled mode multiplies by 1 - h lambda: at 0.98 of the bound a
-/// disturbance of the damped double integrator decays, at 1.02 it grows. With
-/// one cycle of dead time the bound is half of that.
+/// disturbance of the damped double integrator decays, at 1.02 it grows, with up
+/// to four cycles of dead time.
 #[test]
 fn the_bounds_are_where_the_sampled_loop_turns_unstable() {
     let grows = |h_lambda: f64, dead_cycles: usize| {
@@ -92,10 +94,10 @@ fn the_bounds_are_where_the_sampled_loop_turns_unstable() {
         }
         speeds.iter().rev().take(8).any(|speed| speed.abs() > 1.0)
     };
-    for (dead_cycles, bound) in [
-        (0, controller_core::damping::DIRECT_BOUND),
-        (1, controller_core::damping::DEAD_TIME_BOUND),
-    ] {
+    assert_eq!((bound(0), bound(1)), (2.0, 1.0000000000000002));
+    for dead_cycles in 0..=4 {
+        let bound = bound(dead_cycles);
+        let dead_cycles = usize::from(dead_cycles);
         assert!(!grows(0.98 * bound, dead_cycles));
         assert!(grows(1.02 * bound, dead_cycles));
     }
