@@ -8,7 +8,7 @@ use controller_core::config::ControllerConfig;
 use controller_core::controller::{Controller, ControllerState};
 use controller_core::joint::{JointVector, Vector3, diagonal};
 use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullSpace, Posture};
+use controller_core::law::{NullDamping, NullSpace, Posture};
 use controller_core::measurement::{Measurement, Reference};
 use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::real::Real;
@@ -26,7 +26,7 @@ fn first_torque<T: Real>(q: [f64; 7]) -> Option<[f64; 7]> {
         tasks: core::iter::once(Task::uniform(flange, Axes::XYZ, 400.0, 40.0)).collect(),
         null_space: NullSpace {
             stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            damping: diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03]),
+            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
             posture: Posture::Constant,
         },
         observer_gain: JointVector::from([T::from_f64(50.0); 7]),

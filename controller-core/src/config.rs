@@ -6,7 +6,7 @@ use heapless::Vec;
 
 use crate::damping::{self, DampingRate};
 use crate::joint::{DOF, JointMatrix, JointVector, Matrix3};
-use crate::law::NullSpace;
+use crate::law::{NullDamping, NullSpace};
 use crate::linalg::Cholesky;
 use crate::model::ArmModel;
 use crate::real::Real;
@@ -17,6 +17,12 @@ pub const CYCLE_RANGE_S: [f64; 2] = [1e-4, 20e-3];
 
 /// Largest |gain| accepted: beyond it single precision overflows in the law.
 pub const GAIN_MAX: f64 = 1e9;
+
+/// Most cycles of dead time.
+pub const DEAD_CYCLES_MAX: u8 = 8;
+
+/// Largest h c of an inertia-shaped damping D = c M.
+pub const INERTIA_DAMPING_BOUND: f64 = 0.5;
 
 /// What a controller is made of, besides the arm.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,6 +139,16 @@ pub enum ConfigError {
         /// The cycle \[s\].
         value: f64,
     },
+    /// More dead time than [`DEAD_CYCLES_MAX`].
+    DeadCycles {
+        /// The cycles.
+        value: u8,
+    },
+    /// The rate of an inertia-shaped damping is not above 0, or not finite.
+    InertiaDamping {
+        /// The rate \[1/s\].
+        value: f64,
+    },
     /// The null-space damping is too strong for the cycle.
     Damping {
         /// The joint that dissipates most.
@@ -214,6 +230,17 @@ impl fmt::Display for ConfigError {
                 let [min, max] = CYCLE_RANGE_S;
                 write!(f, "cycle {value} s; allowed {min} to {max}")
             }
+            Self::DeadCycles { value } => {
+                write!(
+                    f,
+                    "dead time of {value} cycles; allowed 0 to {DEAD_CYCLES_MAX}"
+                )
+            }
+            Self::InertiaDamping { value } => write!(
+                f,
+                "inertia-shaped null-space damping {value} 1/s; it must be above 0 and at most \
+                 {GAIN_MAX:e}"
+            ),
             Self::Damping {
                 joint,
                 value,
@@ -265,18 +292,43 @@ impl<T: Real> ControllerConfig<T> {
             }
         }
         validate_gain(Gain::NullStiffness, 0, &self.null_space.stiffness)?;
-        validate_gain(Gain::NullDamping, 0, &self.null_space.damping)?;
+        if self.dead_cycles > DEAD_CYCLES_MAX {
+            return Err(ConfigError::DeadCycles {
+                value: self.dead_cycles,
+            });
+        }
         self.validate_damping(model)
     }
 
-    /// What h lambda must stay below.
+    /// What h lambda must stay below. An inertia-shaped damping is held to half
+    /// a cycle's decay: it is the same everywhere and never needs more.
     #[must_use]
     pub fn damping_bound(&self) -> f64 {
-        damping::bound(self.dead_cycles)
+        let stable = damping::bound(self.dead_cycles);
+        match self.null_space.damping {
+            NullDamping::Joint(_) => stable,
+            NullDamping::Inertia(_) => stable.min(INERTIA_DAMPING_BOUND),
+        }
     }
 
     fn validate_damping(&self, model: &ArmModel<T>) -> Result<DampingRate, ConfigError> {
-        let fastest = damping::fastest_mode(model, &self.null_space.damping);
+        let fastest = match &self.null_space.damping {
+            NullDamping::Joint(matrix) => {
+                validate_gain(Gain::NullDamping, 0, matrix)?;
+                damping::fastest_mode(model, matrix)
+            }
+            NullDamping::Inertia(rate) => {
+                let rate = rate.to_f64();
+                if !(rate > 0.0 && rate <= GAIN_MAX) {
+                    return Err(ConfigError::InertiaDamping { value: rate });
+                }
+                DampingRate {
+                    rate,
+                    joint: 1,
+                    posture: [0.0; DOF],
+                }
+            }
+        };
         let value = fastest.rate * self.cycle_s.to_f64();
         let bound = self.damping_bound();
         if value < bound {

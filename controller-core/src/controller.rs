@@ -13,7 +13,7 @@ use crate::law::{Command, Cycle, NullSpace, PostureState, TaskMotion, TorqueDema
 use crate::limits::TorqueCommand;
 use crate::measurement::{Measurement, Reference, plausible, usable};
 use crate::model::ArmModel;
-use crate::observer::Observer;
+use crate::observer::{DeadTime, Observer};
 use crate::real::Real;
 use crate::task::{MAX_LEVELS, Task, TaskRows};
 
@@ -26,6 +26,7 @@ pub struct Controller<T: Real> {
     null_space: NullSpace<T>,
     observer_gain: JointVector<T>,
     cycle_s: T,
+    dead_cycles: u8,
     fastest_mode: DampingRate,
 }
 
@@ -34,6 +35,7 @@ pub struct Controller<T: Real> {
 #[derive(Clone, Debug)]
 pub struct ControllerState<T: Real> {
     observer: Observer<T>,
+    dead_time: DeadTime<T>,
     posture: PostureState<T>,
     /// Limited gravity torque of the last plausible posture \[Nm\].
     hold: JointVector<T>,
@@ -58,6 +60,7 @@ impl<T: Real> ControllerState<T> {
     pub const fn new() -> Self {
         Self {
             observer: Observer::new(),
+            dead_time: DeadTime::new(),
             posture: PostureState::new(),
             hold: zeros(),
             fault: None,
@@ -110,6 +113,7 @@ impl<T: Real> Controller<T> {
             null_space: config.null_space,
             observer_gain: config.observer_gain,
             cycle_s: config.cycle_s,
+            dead_cycles: config.dead_cycles,
             fastest_mode,
         })
     }
@@ -225,7 +229,8 @@ impl<T: Real> Controller<T> {
         });
         let TorqueCommand { torque, saturated } = TorqueCommand::new(&demand, limit)?;
 
-        state.observer.apply(&dynamics, joints, &torque);
+        let acting = state.dead_time.send(self.dead_cycles, &torque, &state.hold);
+        state.observer.apply(&dynamics, joints, &acting);
         Ok(Step {
             torque,
             residual,

@@ -71,6 +71,8 @@ pub enum Quantity {
     Interval,
     /// The reference of a task level.
     TaskReference,
+    /// The squared norm of the desired orientation of a level.
+    Orientation,
     /// The desired posture of a joint \[rad\].
     PostureReference,
     /// The number of task references.
@@ -86,6 +88,7 @@ impl Quantity {
             Self::Speed => "speed [rad/s] of joint",
             Self::Interval => "measured interval [s]",
             Self::TaskReference => "reference of level",
+            Self::Orientation => "squared quaternion norm of level",
             Self::PostureReference => "desired posture [rad] of joint",
             Self::ReferenceCount => "number of task references",
             Self::Torque => "demanded torque [Nm] of joint",

@@ -56,9 +56,19 @@ pub struct PointMotion<T: Real> {
     pub dx: Vector3<T>,
 }
 
-/// J (3 x 7, dx = J dq) and dJ/dt of a point, stored by rows x, y, z.
+/// Orientation and angular velocity of a link at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkMotion<T: Real> {
+    /// Axes of its DH frame in the columns, base-plate axes.
+    pub rotation: Matrix3<T>,
+    /// Angular velocity \[rad/s\], base-plate axes.
+    pub angular_velocity: Vector3<T>,
+}
+
+/// J (3 x 7, dx = J dq) and dJ/dt of a point, stored by rows x, y, z; of a link's
+/// angular velocity where that is asked for, then without the unit m.
 #[derive(Clone, Copy, Debug)]
-pub struct PointJacobian<T: Real> {
+pub struct JacobianRows<T: Real> {
     /// Rows of J \[m\], base-plate axes.
     pub jacobian: [JointVector<T>; 3],
     /// Rows of dJ/dt \[m/s\], base-plate axes.
@@ -127,8 +137,8 @@ impl<T: Real> Kinematics<T> {
     /// dz x (x - o) + z x (dx - do) for the joints below its link, else zero.
     #[must_use]
     #[inline]
-    pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> PointJacobian<T> {
-        let mut rows = PointJacobian {
+    pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> JacobianRows<T> {
+        let mut rows = JacobianRows {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
@@ -141,6 +151,37 @@ impl<T: Real> Kinematics<T> {
                 for axis in 0..3 {
                     rows.jacobian[axis][i] = column[axis];
                     rows.jacobian_dot[axis][i] = column_rate[axis];
+                }
+            }
+        }
+        rows
+    }
+
+    /// Orientation and angular velocity of a link.
+    #[must_use]
+    #[inline]
+    pub fn link(&self, link: usize) -> LinkMotion<T> {
+        let frame = Self::frame(link);
+        LinkMotion {
+            rotation: self.rotation[frame],
+            angular_velocity: self.angular_velocity[frame],
+        }
+    }
+
+    /// J and dJ/dt of a link's angular velocity: columns z and dz for the joints
+    /// up to its own, else zero.
+    #[must_use]
+    #[inline]
+    pub fn angular_jacobian(&self, link: usize) -> JacobianRows<T> {
+        let mut rows = JacobianRows {
+            jacobian: [zeros(); 3],
+            jacobian_dot: [zeros(); 3],
+        };
+        for i in 0..DOF {
+            if i < link {
+                for axis in 0..3 {
+                    rows.jacobian[axis][i] = self.axis[i][axis];
+                    rows.jacobian_dot[axis][i] = self.axis_rate[i][axis];
                 }
             }
         }

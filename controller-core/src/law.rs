@@ -21,11 +21,33 @@ use crate::task::{MAX_ROWS, TaskRows};
 pub struct NullSpace<T: Real> {
     /// K_q \[Nm/rad\], symmetric positive definite; acts on torque.
     pub stiffness: JointMatrix<T>,
-    /// D \[Nms/rad\], symmetric positive definite; acts on torque. Through
-    /// K_l,d = Z D Z^T the torque does not depend on the choice of basis.
-    pub damping: JointMatrix<T>,
+    /// D; acts on torque. Through K_l,d = Z D Z^T the torque does not depend on
+    /// the choice of basis.
+    pub damping: NullDamping<T>,
     /// Where q_d comes from.
     pub posture: Posture,
+}
+
+/// Damping of the null space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NullDamping<T: Real> {
+    /// A constant D \[Nms/rad\], symmetric positive definite.
+    Joint(JointMatrix<T>),
+    /// D = c M(q) with c \[1/s\]: every null-space motion decays at the rate c, in
+    /// every posture. For loops with dead time, where a constant D that damps
+    /// the arm is too strong for the wrist.
+    Inertia(T),
+}
+
+impl<T: Real> NullDamping<T> {
+    /// D x \[Nm for x in rad/s\].
+    #[inline]
+    fn times(&self, dynamics: &Dynamics<T>, x: &JointVector<T>) -> JointVector<T> {
+        match self {
+            Self::Joint(damping) => damping * x,
+            Self::Inertia(rate) => dynamics.mass_matrix * x * *rate,
+        }
+    }
 }
 
 /// Where the posture q_d of the null space comes from.
@@ -103,7 +125,7 @@ impl<T: Real> Command<T> {
                 - dynamics.coriolis
                 - dynamics.coriolis_transpose_times(&motion.task_velocity)
                 + null_space.stiffness * (posture - state.q)
-                - null_space.damping * motion.null_velocity,
+                - null_space.damping.times(dynamics, &motion.null_velocity),
         }
     }
 }

@@ -50,6 +50,7 @@ pub mod linalg;
 pub mod measurement;
 pub mod model;
 pub mod observer;
+pub mod orientation;
 pub mod real;
 pub mod record;
 mod spatial;

@@ -17,6 +17,9 @@ pub const SPEED_FACTOR: f64 = 3.0;
 /// Multiples of the nominal cycle between which a measured interval is believed.
 pub const INTERVAL_FACTORS: [f64; 2] = [0.5, 20.0];
 
+/// Norms between which a desired orientation is believed to be a quaternion.
+pub const QUATERNION_NORMS: [f64; 2] = [0.5, 2.0];
+
 /// What the robot reports at a cycle instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement<T: Real> {
@@ -109,6 +112,9 @@ pub(crate) fn usable<T: Real>(reference: &Reference<T>, levels: usize) -> Result
         });
     }
     for (index, task) in (1..).zip(&reference.tasks) {
+        let norm_squared = task.orientation.dot(&task.orientation);
+        let [low, high] = QUATERNION_NORMS.map(|norm| T::from_f64(norm * norm));
+        within(Quantity::Orientation, index, norm_squared, low, high)?;
         for &value in task.x.iter().chain(&task.dx).chain(&task.ddx) {
             finite(
                 FaultKind::Implausible,

@@ -14,6 +14,7 @@
 //! K_I < 2 / h. It starts from the momentum at hand: (30) as printed assumes
 //! that the arm starts at rest.
 
+use crate::config::DEAD_CYCLES_MAX;
 use crate::dynamics::Dynamics;
 use crate::joint::{JointState, JointVector, zeros};
 use crate::real::Real;
@@ -77,6 +78,52 @@ impl<T: Real> Observer<T> {
         torque: &JointVector<T>,
     ) {
         self.input = torque + dynamics.coriolis_transpose_times(&state.dq) - dynamics.gravity;
+    }
+}
+
+/// The torques of the last cycles: which of them acts now, behind a dead time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DeadTime<T: Real> {
+    sent: [JointVector<T>; DEAD_CYCLES_MAX as usize],
+    started: bool,
+}
+
+impl<T: Real> DeadTime<T> {
+    pub const fn new() -> Self {
+        Self {
+            sent: [zeros(); DEAD_CYCLES_MAX as usize],
+            started: false,
+        }
+    }
+
+    /// Sends `torque` and returns the one that acts in this cycle: sent
+    /// `cycles` cycles ago, or `before` if that was before the first.
+    #[inline]
+    pub fn send(
+        &mut self,
+        cycles: u8,
+        torque: &JointVector<T>,
+        before: &JointVector<T>,
+    ) -> JointVector<T> {
+        if cycles == 0 {
+            return *torque;
+        }
+        if !self.started {
+            self.sent = [*before; DEAD_CYCLES_MAX as usize];
+            self.started = true;
+        }
+        let acting = self
+            .sent
+            .iter()
+            .take(usize::from(cycles))
+            .next_back()
+            .unwrap_or(torque);
+        let acting = *acting;
+        let mut next = *torque;
+        for sent in &mut self.sent {
+            core::mem::swap(sent, &mut next);
+        }
+        acting
     }
 }
 

@@ -1,8 +1,9 @@
-//! Tasks: one point of the arm, the axes of it that a priority level controls,
-//! and its gains; and the stacked rows J, dJ/dt that all levels make together.
+//! Tasks: a point or the orientation of a link, the axes of it that a priority
+//! level controls, and its gains; and the stacked rows J, dJ/dt that all levels make together.
 
 use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
-use crate::kinematics::{Kinematics, LinkPoint, PointMotion};
+use crate::kinematics::{JacobianRows, Kinematics, LinkPoint};
+use crate::orientation::{self, Quaternion};
 use crate::real::Real;
 
 /// Most task rows of all levels together.
@@ -51,12 +52,25 @@ impl Axes {
     }
 }
 
+/// What a task tracks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+pub enum TaskKind {
+    /// The position of the point.
+    #[default]
+    Position,
+    /// The orientation of the link's DH frame; of the point only the link counts.
+    Orientation,
+}
+
 /// A tracking task, one priority level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task<T: Real> {
+    /// Position or orientation.
+    pub kind: TaskKind,
     /// The controlled point.
     pub point: LinkPoint<T>,
-    /// Its controlled axes.
+    /// Its controlled axes: along them, or for an orientation about them.
     pub axes: Axes,
     /// K_p of (12) \[1/s2\], symmetric positive definite on the controlled axes;
     /// the other rows and columns are not read.
@@ -84,6 +98,7 @@ impl<T: Real> Task<T> {
         let matrix =
             |values: [f64; 3]| Matrix3::from_diagonal(&Vector3::from(values.map(T::from_f64)));
         Self {
+            kind: TaskKind::Position,
             point,
             axes,
             stiffness: matrix(stiffness),
@@ -92,15 +107,18 @@ impl<T: Real> Task<T> {
     }
 }
 
-/// Desired motion of one level's point, base-plate frame. Axes that the task
-/// does not control are not read.
+/// Desired motion of one level, base-plate frame. Axes that the task does not
+/// control have no influence, but must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskReference<T: Real> {
-    /// x_d \[m\].
+    /// x_d \[m\] of a position task.
     pub x: Vector3<T>,
-    /// dx_d \[m/s\].
+    /// Desired orientation of an orientation task, norm 0.5 to 2; the sign does
+    /// not matter.
+    pub orientation: Quaternion<T>,
+    /// dx_d \[m/s\], or the desired angular velocity \[rad/s\].
     pub dx: Vector3<T>,
-    /// ddx_d \[m/s2\].
+    /// ddx_d \[m/s2\], or the desired angular acceleration \[rad/s2\].
     pub ddx: Vector3<T>,
 }
 
@@ -110,8 +128,52 @@ impl<T: Real> TaskReference<T> {
     pub const fn rest(x: Vector3<T>) -> Self {
         Self {
             x,
+            orientation: orientation::identity(),
             dx: zeros(),
             ddx: zeros(),
+        }
+    }
+
+    /// Rest in an orientation.
+    #[must_use]
+    pub const fn facing(orientation: Quaternion<T>) -> Self {
+        Self {
+            x: zeros(),
+            orientation,
+            dx: zeros(),
+            ddx: zeros(),
+        }
+    }
+}
+
+/// Where a task's point or frame is, how it moves, and how the joints move it.
+struct Target<T: Real> {
+    actual: TaskReference<T>,
+    rows: JacobianRows<T>,
+}
+
+impl<T: Real> Target<T> {
+    #[inline]
+    fn position(task: &Task<T>, kinematics: &Kinematics<T>) -> Self {
+        let motion = kinematics.point(&task.point);
+        Self {
+            actual: TaskReference {
+                dx: motion.dx,
+                ..TaskReference::rest(motion.x)
+            },
+            rows: kinematics.point_jacobian(task.point.link, &motion),
+        }
+    }
+
+    #[inline]
+    fn orientation(task: &Task<T>, kinematics: &Kinematics<T>) -> Self {
+        let motion = kinematics.link(task.point.link);
+        Self {
+            actual: TaskReference {
+                dx: motion.angular_velocity,
+                ..TaskReference::facing(orientation::of_rotation(&motion.rotation))
+            },
+            rows: kinematics.angular_jacobian(task.point.link),
         }
     }
 }
@@ -134,7 +196,7 @@ pub struct TaskRows<T: Real> {
     /// Task acceleration wanted, (12) without the bias:
     /// ddx_d + K_d (dx_d - dx) + K_p (x_d - x) \[m/s2\].
     pub wanted: [T; MAX_ROWS],
-    /// x_d - x \[m\].
+    /// x_d - x \[m\], or the orientation error \[rad\] of [`orientation::error`].
     pub error: [T; MAX_ROWS],
 }
 
@@ -162,10 +224,12 @@ impl<T: Real> TaskRows<T> {
         };
         let mut references = references.iter();
         for task in tasks {
-            let motion = kinematics.point(&task.point);
-            let rest = TaskReference::rest(motion.x);
-            let reference = references.next().unwrap_or(&rest);
-            rows.push(task, reference, &motion, kinematics, state);
+            let target = match task.kind {
+                TaskKind::Position => Target::position(task, kinematics),
+                TaskKind::Orientation => Target::orientation(task, kinematics),
+            };
+            let reference = references.next().unwrap_or(&target.actual);
+            rows.push(task, reference, &target, state);
         }
         rows
     }
@@ -175,14 +239,21 @@ impl<T: Real> TaskRows<T> {
         &mut self,
         task: &Task<T>,
         reference: &TaskReference<T>,
-        motion: &PointMotion<T>,
-        kinematics: &Kinematics<T>,
+        target: &Target<T>,
         state: &JointState<T>,
     ) {
-        let point = kinematics.point_jacobian(task.point.link, motion);
+        let Target {
+            actual,
+            rows: point,
+        } = target;
         let selected = |v: Vector3<T>| task.axes.select(&v);
-        let error = selected(reference.x - motion.x);
-        let error_rate = selected(reference.dx - motion.dx);
+        let error = selected(match task.kind {
+            TaskKind::Position => reference.x - actual.x,
+            TaskKind::Orientation => {
+                orientation::error(&reference.orientation, &actual.orientation)
+            }
+        });
+        let error_rate = selected(reference.dx - actual.dx);
         let wanted = reference.ddx + task.damping * error_rate + task.stiffness * error;
         let level_start = self.count;
         for axis in 0..3 {

@@ -2,6 +2,7 @@
 //! starting and, where they end, ending at rest with zero acceleration.
 
 use crate::joint::{Vector3, zeros};
+use crate::orientation::{self, Quaternion};
 use crate::real::Real;
 use crate::task::TaskReference;
 
@@ -86,9 +87,9 @@ impl<T: Real> Trajectory<T> {
                 let rate = T::ONE / duration_s;
                 let [b, db, ddb] = quintic(t_s * rate);
                 TaskReference {
-                    x: origin + by * b,
                     dx: by * (db * rate),
                     ddx: by * (ddb * rate * rate),
+                    ..TaskReference::rest(origin + by * b)
                 }
             }
             Self::Turn {
@@ -104,24 +105,83 @@ impl<T: Real> Trajectory<T> {
                     radius_m * db * growth_rate,
                     radius_m * ddb * growth_rate * growth_rate,
                 );
-                // Whole turns are taken off before the angle is formed.
-                let turns = t_s / period_s;
-                let tau = T::from_f64(core::f64::consts::TAU);
-                let (sin, cos) = ((turns - turns.floor_small()) * tau).sine_cosine();
-                let omega = tau / period_s;
+                let (sin, cos, omega) = phase(t_s, period_s);
                 let (spin, pull) = (b * omega, b * omega * omega);
                 let twist = (db + db) * omega;
                 TaskReference {
-                    x: origin + plane.vector(b * cos, b * sin),
                     dx: plane.vector(db * cos - spin * sin, db * sin + spin * cos),
                     ddx: plane.vector(
                         ddb * cos - twist * sin - pull * cos,
                         ddb * sin + twist * cos - pull * sin,
                     ),
+                    ..TaskReference::rest(origin + plane.vector(b * cos, b * sin))
                 }
             }
         }
     }
+}
+
+/// A reference motion of an orientation as data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rotation<T: Real> {
+    /// Rest at the origin.
+    Hold,
+    /// Turning to and fro about a fixed axis: by
+    /// amplitude_rad b(t / growth_s) sin(2 pi t / period_s) from the origin.
+    Swing {
+        /// Unit vector, base-plate axes.
+        axis: Vector3<T>,
+        /// Largest angle \[rad\], up to 2 pi.
+        amplitude_rad: T,
+        /// Time of one swing \[s\].
+        period_s: T,
+        /// Time in which the amplitude grows from zero \[s\].
+        growth_s: T,
+    },
+}
+
+impl<T: Real> Rotation<T> {
+    /// Reference at time `t_s` \[s\] since the start, from the orientation
+    /// `origin`. Time before the start counts as the start.
+    #[must_use]
+    pub fn sample(&self, origin: &Quaternion<T>, t_s: T) -> TaskReference<T> {
+        let t_s = t_s.larger(T::ZERO);
+        match *self {
+            Self::Hold => TaskReference::facing(*origin),
+            Self::Swing {
+                axis,
+                amplitude_rad,
+                period_s,
+                growth_s,
+            } => {
+                let growth_rate = T::ONE / growth_s;
+                let [b, db, ddb] = quintic(t_s * growth_rate);
+                let (b, db, ddb) = (
+                    amplitude_rad * b,
+                    amplitude_rad * db * growth_rate,
+                    amplitude_rad * ddb * growth_rate * growth_rate,
+                );
+                let (sin, cos, omega) = phase(t_s, period_s);
+                let spin = b * omega;
+                let swung = orientation::about_axis(&axis, b * sin);
+                TaskReference {
+                    dx: axis * (db * sin + spin * cos),
+                    ddx: axis * (ddb * sin + (db + db) * omega * cos - spin * omega * sin),
+                    ..TaskReference::facing(orientation::product(&swung, origin))
+                }
+            }
+        }
+    }
+}
+
+/// Sine and cosine of 2 pi t / period, and 2 pi / period \[rad/s\]. Whole turns
+/// are taken off before the angle is formed.
+#[inline(always)]
+fn phase<T: Real>(t_s: T, period_s: T) -> (T, T, T) {
+    let turns = t_s / period_s;
+    let tau = T::from_f64(core::f64::consts::TAU);
+    let (sin, cos) = ((turns - turns.floor_small()) * tau).sine_cosine();
+    (sin, cos, tau / period_s)
 }
 
 impl<T: Real> Default for TaskReference<T> {
@@ -184,6 +244,27 @@ mod tests {
                 assert!((velocity - now.dx).amax() < 2e-6, "{motion:?} {t}");
                 assert!((acceleration - now.ddx).amax() < 2e-4, "{motion:?} {t}");
             }
+        }
+    }
+
+    /// The angular velocity against the quaternion's own change: dq/dt = w q / 2.
+    #[test]
+    fn a_swing_turns_with_its_angular_velocity() {
+        let origin = orientation::about_axis(&Vector3::from([0.6, 0.0, 0.8]), 0.7);
+        let swing = Rotation::Swing {
+            axis: Vector3::from([0.0, 0.6, 0.8]),
+            amplitude_rad: 1.2,
+            period_s: 4.0,
+            growth_s: 2.0,
+        };
+        let step = 1e-4;
+        for i in 1..400 {
+            let t = f64::from(i) * 0.023;
+            let [before, now, after] = [t - step, t, t + step].map(|t| swing.sample(&origin, t));
+            let turned = orientation::error(&after.orientation, &before.orientation);
+            assert!((turned / (2.0 * step) - now.dx).amax() < 2e-6, "{t}");
+            let acceleration = (after.dx - before.dx) / (2.0 * step);
+            assert!((acceleration - now.ddx).amax() < 2e-4, "{t}");
         }
     }
 }

@@ -7,7 +7,7 @@ use controller_core::dynamics::Dynamics;
 use controller_core::hierarchy::Hierarchy;
 use controller_core::joint::{JointMatrix, JointVector};
 use controller_core::kinematics::Kinematics;
-use controller_core::law::{Command, Cycle, NullSpace, Posture, TaskMotion};
+use controller_core::law::{Command, Cycle, NullDamping, NullSpace, Posture, TaskMotion};
 use controller_core::limits::TorqueCommand;
 use controller_core::model::ArmModel;
 use controller_core::observer::Observer;
@@ -48,7 +48,7 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
     let motion = TaskMotion::new(&dynamics, &hierarchy, &state);
     let null_space = NullSpace {
         stiffness: JointMatrix::from_diagonal(&input.null_space.stiffness.into()),
-        damping: JointMatrix::from_diagonal(&input.null_space.damping.into()),
+        damping: NullDamping::Joint(JointMatrix::from_diagonal(&input.null_space.damping.into())),
         posture: Posture::Constant,
     };
     let posture = input.null_space.q_d.into();

@@ -3,7 +3,7 @@
 use controller_core::config::ControllerConfig;
 use controller_core::joint::{JointVector, diagonal};
 use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullSpace, Posture};
+use controller_core::law::{NullDamping, NullSpace, Posture};
 use controller_core::real::Real;
 use controller_core::task::{Axes, Task};
 
@@ -37,7 +37,7 @@ pub fn reference<T: Real>(levels: &[(Point, Axes)]) -> ControllerConfig<T> {
         tasks: levels.iter().map(task).collect(),
         null_space: NullSpace {
             stiffness: diagonal(REFERENCE_STIFFNESS),
-            damping: diagonal(REFERENCE_DAMPING),
+            damping: NullDamping::Joint(diagonal(REFERENCE_DAMPING)),
             posture: Posture::Constant,
         },
         observer_gain: JointVector::from([T::from_f64(50.0); 7]),

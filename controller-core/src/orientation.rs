@@ -1,0 +1,130 @@
+//! Orientations as unit quaternions, and the error between two of them along
+//! the shortest path.
+
+use crate::joint::{Matrix3, Vector3};
+use crate::real::Real;
+
+/// A quaternion (w, x, y, z). A unit quaternion q and -q are the same orientation.
+pub type Quaternion<T> = nalgebra::SVector<T, 4>;
+
+/// No rotation.
+#[must_use]
+pub const fn identity<T: Real>() -> Quaternion<T> {
+    Quaternion::from_array_storage(nalgebra::ArrayStorage([[
+        T::ONE,
+        T::ZERO,
+        T::ZERO,
+        T::ZERO,
+    ]]))
+}
+
+/// Rotation by `angle` \[rad\], |angle| <= 4 pi, about a unit `axis`.
+#[must_use]
+pub fn about_axis<T: Real>(axis: &Vector3<T>, angle: T) -> Quaternion<T> {
+    let (sin, cos) = (angle * T::HALF).sine_cosine();
+    Quaternion::from([cos, axis.x * sin, axis.y * sin, axis.z * sin])
+}
+
+/// First `second`, then `first`: the product first * second.
+#[must_use]
+pub fn product<T: Real>(first: &Quaternion<T>, second: &Quaternion<T>) -> Quaternion<T> {
+    let (a, b) = (vector_part(first), vector_part(second));
+    let w = first[0] * second[0] - a.dot(&b);
+    let v = b * first[0] + a * second[0] + a.cross(&b);
+    Quaternion::from([w, v.x, v.y, v.z])
+}
+
+/// The unit quaternion of a rotation matrix (axes of the frame in its columns).
+///
+/// Of the four equal formulas, which divide by different components, the one
+/// with the largest divisor is taken: accurate everywhere.
+#[must_use]
+pub fn of_rotation<T: Real>(r: &Matrix3<T>) -> Quaternion<T> {
+    let one = T::ONE;
+    let (x, y, z) = (r.m11, r.m22, r.m33);
+    let candidates = [
+        [one + x + y + z, r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12],
+        [r.m32 - r.m23, one + x - y - z, r.m21 + r.m12, r.m13 + r.m31],
+        [r.m13 - r.m31, r.m21 + r.m12, one - x + y - z, r.m32 + r.m23],
+        [r.m21 - r.m12, r.m13 + r.m31, r.m32 + r.m23, one - x - y + z],
+    ];
+    let [mut best, ..] = candidates;
+    let mut largest = T::ZERO;
+    for (i, candidate) in candidates.iter().enumerate() {
+        let divisor = candidate[i];
+        if divisor > largest {
+            largest = divisor;
+            best = *candidate;
+        }
+    }
+    // The largest divisor is four times the square of the largest component, at least 1.
+    Quaternion::from(best) * (T::HALF / largest.larger(T::HALF).square_root())
+}
+
+/// Twice the vector part of desired * actual^-1 with its sign chosen for the
+/// shortest path: 2 sin(theta / 2) times the axis about which the actual
+/// orientation must turn, base-plate axes. Equal to the rotation vector for small
+/// angles, largest (2) at half a turn. `desired` need not be normalised and its
+/// sign does not matter.
+#[must_use]
+#[inline]
+pub fn error<T: Real>(desired: &Quaternion<T>, actual: &Quaternion<T>) -> Vector3<T> {
+    let (d, a) = (vector_part(desired), vector_part(actual));
+    let w = desired.dot(actual);
+    let v = d * actual[0] - a * desired[0] - d.cross(&a);
+    let norm = desired.dot(desired).square_root();
+    v * ((T::ONE + T::ONE).with_sign_of(w) / norm)
+}
+
+fn vector_part<T: Real>(q: &Quaternion<T>) -> Vector3<T> {
+    Vector3::from([q[1], q[2], q[3]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rotation about a unit axis by an angle, by Rodrigues' formula.
+    fn rodrigues(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+        let (sin, cos) = angle.sine_cosine();
+        let cross = Matrix3::new(
+            0.0, -axis.z, axis.y, axis.z, 0.0, -axis.x, -axis.y, axis.x, 0.0,
+        );
+        Matrix3::identity() + cross * sin + cross * cross * (1.0 - cos)
+    }
+
+    /// All angles up to and beyond half a turn, both signs of the desired
+    /// quaternion: the error turns the short way, 2 sin of half the angle. The
+    /// quaternion of a matrix is accurate to some units of rounding.
+    #[test]
+    fn the_error_takes_the_shortest_path_whatever_the_sign() {
+        let axes = [
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.6, 0.0, 0.8],
+            [0.48, -0.6, 0.64],
+        ];
+        let start = about_axis(&Vector3::from([0.0, 0.6, 0.8]), 1.1);
+        for axis in axes.map(Vector3::from) {
+            for step in -62..=62 {
+                let angle = f64::from(step) * 0.1;
+                let desired = product(&about_axis(&axis, angle), &start);
+                let expected = axis * {
+                    let (half, cosine) = (angle * 0.5).sine_cosine();
+                    2.0 * half * 1.0_f64.copysign(cosine)
+                };
+                for sign in [1.0, -1.0, 1.3] {
+                    let e = error(&(desired * sign), &start);
+                    assert!((e - expected).amax() < 1e-14, "{angle} {e}");
+                }
+                let matrix = rodrigues(&axis, angle);
+                let q = of_rotation(&matrix);
+                assert!((q.norm() - 1.0).abs() < 1e-14);
+                assert!(
+                    error(&about_axis(&axis, angle), &q).amax() < 1e-13,
+                    "{angle}"
+                );
+            }
+        }
+    }
+}
