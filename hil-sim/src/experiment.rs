@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use controller_core::controller::{Controller, ControllerState};
 use controller_core::fault::{Fault, FaultKind};
-use controller_core::joint::{JointState, JointVector};
+use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::measurement::{Measurement, Reference, SPEED_FACTOR};
 use controller_core::model::ArmModel;
+use controller_core::orientation;
 use controller_core::task::Axes;
 
 use crate::contact::Contacts;
@@ -15,7 +16,7 @@ use crate::invalid::Invalid;
 use crate::metrics::{FaultCounts, Metrics, Sample};
 use crate::names::{Named, NullStiffness};
 use crate::plant::{Plant, PlantKind};
-use crate::scenario::Scenario;
+use crate::scenario::{self, Scenario, TaskSpec};
 use crate::summary::{self, Summary, Verdict};
 use crate::trace::{LevelRow, Row, Trace};
 
@@ -51,7 +52,7 @@ impl Experiment {
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
         let model = ArmModel::new(self.scenario.arm()).map_err(Invalid::line)?;
-        let mut config = self.scenario.controller_config();
+        let mut config = self.scenario.controller_config(0);
         config.null_space.stiffness *= self.null_stiffness.factor();
         Controller::new(&model, &config)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
@@ -158,24 +159,41 @@ impl Experiment {
         levels
             .map(|(level, reference)| {
                 let point = level.point.resolve();
-                let (x, _) = plant.model().point(truth, point.link, &point.offset);
                 let axes = Axes::from_name(&level.axes).unwrap_or(Axes::XYZ);
-                let mut row = LevelRow::default();
-                for axis in (0..3).filter(|&axis| axes.xyz[axis]) {
-                    row.desired.push(reference.x[axis]);
-                    row.actual.push(x[axis]);
-                    row.error += (reference.x[axis] - x[axis]).powi(2);
+                let chosen = || (0..3).filter(|&axis| axes.xyz[axis]);
+                let pick = |v: &Vector3<f64>| chosen().map(|axis| v[axis]).collect::<Vec<_>>();
+                let (desired, actual, difference) = match level.task {
+                    TaskSpec::Position => {
+                        let (x, _) = plant.model().point(truth, point.link, &point.offset);
+                        (pick(&reference.x), pick(&x), reference.x - x)
+                    }
+                    TaskSpec::Orientation => {
+                        let desired = reference.orientation;
+                        let actual = scenario::orientation(&truth.q, point.link);
+                        let error = orientation::error(&desired, &actual);
+                        (
+                            desired.as_slice().to_vec(),
+                            actual.as_slice().to_vec(),
+                            error,
+                        )
+                    }
+                };
+                let error = chosen()
+                    .map(|axis| difference[axis].powi(2))
+                    .sum::<f64>()
+                    .sqrt();
+                LevelRow {
+                    desired,
+                    actual,
+                    error,
                 }
-                row.error = row.error.sqrt();
-                row
             })
             .collect()
     }
 
     fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {
         let scenario = &self.scenario;
-        let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
-        let levels = metrics.levels(&names);
+        let levels = metrics.levels(&scenario.levels);
         let acceptance = summary::judge(scenario, self.plant, self.contacts, &levels);
         let mut faults = FaultCounts::default();
         let (verdict, reason) = match stop {

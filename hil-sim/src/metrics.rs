@@ -6,32 +6,35 @@ use serde::Serialize;
 
 use crate::contact::Interval;
 use crate::invalid::Invalid;
+use crate::scenario::{LevelSpec, TaskSpec};
 
 /// A figure that an acceptance limit can name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
-    /// rms error of a level over all cycles \[mm\].
+    /// rms error of a level over all cycles.
     Rms(usize),
-    /// Largest error of a level \[mm\].
+    /// Largest error of a level.
     Max(usize),
-    /// Largest plateau of a level over the contacts \[mm\].
+    /// Largest plateau of a level over the contacts.
     Plateau(usize),
 }
 
 impl Metric {
-    /// From a name such as `level1_rms_mm`; levels count from 1.
+    /// From a name such as `level1_rms_mm`, or `level2_max_mrad` for an
+    /// orientation; levels count from 1.
     ///
     /// # Errors
-    /// The names that exist for `levels` levels.
-    pub fn parse(name: &str, levels: usize) -> Result<Self, Invalid> {
+    /// The names that exist for these levels.
+    pub fn parse(name: &str, levels: &[LevelSpec]) -> Result<Self, Invalid> {
         let mut known = Vec::new();
-        for level in 0..levels {
-            for (suffix, metric) in [
-                ("rms", Self::Rms(level)),
-                ("max", Self::Max(level)),
-                ("plateau", Self::Plateau(level)),
+        for (index, level) in levels.iter().enumerate() {
+            let unit = Unit::of(level.task).suffix();
+            for (figure, metric) in [
+                ("rms", Self::Rms(index)),
+                ("max", Self::Max(index)),
+                ("plateau", Self::Plateau(index)),
             ] {
-                let full = format!("level{}_{suffix}_mm", level + 1);
+                let full = format!("level{}_{figure}_{unit}", index + 1);
                 if full == name {
                     return Ok(metric);
                 }
@@ -46,9 +49,38 @@ impl Metric {
     #[must_use]
     pub fn value(self, levels: &[LevelFigures]) -> Option<f64> {
         match self {
-            Self::Rms(level) => levels[level].rms_mm,
-            Self::Max(level) => levels[level].max_mm,
-            Self::Plateau(level) => levels[level].worst_plateau_mm(),
+            Self::Rms(level) => levels[level].rms(),
+            Self::Max(level) => levels[level].max(),
+            Self::Plateau(level) => levels[level].worst_plateau(),
+        }
+    }
+}
+
+/// Unit of a level's error, a thousandth of its SI unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Position.
+    Millimetre,
+    /// Orientation.
+    Milliradian,
+}
+
+impl Unit {
+    /// The unit of a task.
+    #[must_use]
+    pub fn of(task: TaskSpec) -> Self {
+        match task {
+            TaskSpec::Position => Self::Millimetre,
+            TaskSpec::Orientation => Self::Milliradian,
+        }
+    }
+
+    /// "mm" or "mrad".
+    #[must_use]
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Millimetre => "mm",
+            Self::Milliradian => "mrad",
         }
     }
 }
@@ -89,8 +121,9 @@ impl Mean {
     }
 }
 
-/// Tracking figures of one level \[mm\]: norms over its axes, of the true
-/// motion, at the cycle instants.
+/// Tracking figures of one level: norms over its axes, of the true motion, at
+/// the cycle instants. Those of a position are in mm, those of an orientation in
+/// mrad; the others are null.
 #[derive(Clone, Debug, Serialize)]
 pub struct LevelFigures {
     /// Point and axes.
@@ -103,15 +136,44 @@ pub struct LevelFigures {
     pub rms_inside_mm: Option<f64>,
     /// Over the other cycles.
     pub rms_outside_mm: Option<f64>,
-    /// Mean over the last 0.2 s before each contact's force ramps down.
+    /// Mean over the last 0.2 s before each contact's force goes down.
     pub plateau_mm: Vec<Option<f64>>,
+    /// The same of an orientation.
+    pub rms_mrad: Option<f64>,
+    /// The same of an orientation.
+    pub max_mrad: Option<f64>,
+    /// The same of an orientation.
+    pub plateau_mrad: Vec<Option<f64>>,
 }
 
 impl LevelFigures {
-    /// The largest plateau that was reached.
+    /// In which unit the level is measured.
     #[must_use]
-    pub fn worst_plateau_mm(&self) -> Option<f64> {
-        self.plateau_mm.iter().flatten().copied().reduce(f64::max)
+    pub fn unit(&self) -> Unit {
+        if self.rms_mrad.is_some() {
+            Unit::Milliradian
+        } else {
+            Unit::Millimetre
+        }
+    }
+
+    /// rms over all cycles, in the level's unit.
+    #[must_use]
+    pub fn rms(&self) -> Option<f64> {
+        self.rms_mm.or(self.rms_mrad)
+    }
+
+    /// Largest error, in the level's unit.
+    #[must_use]
+    pub fn max(&self) -> Option<f64> {
+        self.max_mm.or(self.max_mrad)
+    }
+
+    /// The largest plateau that was reached, in the level's unit.
+    #[must_use]
+    pub fn worst_plateau(&self) -> Option<f64> {
+        let plateaus = self.plateau_mm.iter().chain(&self.plateau_mrad);
+        plateaus.flatten().copied().reduce(f64::max)
     }
 }
 
@@ -175,7 +237,7 @@ pub struct Sample<'a> {
     pub t_s: f64,
     /// True joint state.
     pub state: &'a JointState<f64>,
-    /// Error norm per level \[m\].
+    /// Error norm per level \[m\], or \[rad\].
     pub errors: &'a [f64],
     /// Joint torque of the contacts \[Nm\], -tau_ext.
     pub contact_torque: &'a JointVector<f64>,
@@ -233,17 +295,17 @@ impl Metrics {
             .iter()
             .any(|contact| contact.inside(sample.t_s));
         for (level, &error) in self.levels.iter_mut().zip(sample.errors) {
-            let mm = error * 1e3;
-            level.all.add(mm);
+            let error = error * 1e3;
+            level.all.add(error);
             if inside {
-                level.inside.add(mm)
+                level.inside.add(error)
             } else {
-                level.outside.add(mm)
+                level.outside.add(error)
             }
-            level.max = Some(level.max.map_or(mm, |max| max.max(mm)));
+            level.max = Some(level.max.map_or(error, |max| max.max(error)));
             for (plateau, contact) in level.plateaus.iter_mut().zip(&self.contacts) {
                 if contact.plateau(sample.t_s) {
-                    plateau.add(mm);
+                    plateau.add(error);
                 }
             }
         }
@@ -270,18 +332,32 @@ impl Metrics {
         self.cycles
     }
 
-    /// Tracking figures; `names` are the levels' labels.
+    /// Tracking figures of the levels.
     #[must_use]
-    pub fn levels(&self, names: &[String]) -> Vec<LevelFigures> {
-        let figures = |(sums, name): (&LevelSums, &String)| LevelFigures {
-            name: name.clone(),
-            rms_mm: sums.all.value(),
-            max_mm: sums.max,
-            rms_inside_mm: sums.inside.value(),
-            rms_outside_mm: sums.outside.value(),
-            plateau_mm: sums.plateaus.iter().map(Mean::value).collect(),
+    pub fn levels(&self, levels: &[LevelSpec]) -> Vec<LevelFigures> {
+        let figures = |(sums, level): (&LevelSums, &LevelSpec)| {
+            let plateaus: Vec<_> = sums.plateaus.iter().map(Mean::value).collect();
+            let position = level.task == TaskSpec::Position;
+            let (plateau_mm, plateau_mrad) = if position {
+                (plateaus, Vec::new())
+            } else {
+                (Vec::new(), plateaus)
+            };
+            let mm = |value: Option<f64>| value.filter(|_| position);
+            let mrad = |value: Option<f64>| value.filter(|_| !position);
+            LevelFigures {
+                name: level.label(),
+                rms_mm: mm(sums.all.value()),
+                max_mm: mm(sums.max),
+                rms_inside_mm: mm(sums.inside.value()),
+                rms_outside_mm: mm(sums.outside.value()),
+                plateau_mm,
+                rms_mrad: mrad(sums.all.value()),
+                max_mrad: mrad(sums.max),
+                plateau_mrad,
+            }
         };
-        self.levels.iter().zip(names).map(figures).collect()
+        self.levels.iter().zip(levels).map(figures).collect()
     }
 
     /// The observer's figures.

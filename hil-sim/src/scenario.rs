@@ -2,17 +2,18 @@
 //! null-space compliance, contacts and acceptance limits. The built-in scenarios are TOML files
 //! like any other.
 
+mod geometry;
 mod point;
 mod reference;
 
 use std::path::Path;
 
 use controller_core::config::ControllerConfig;
-use controller_core::joint::{DOF, JointVector, diagonal};
-use controller_core::law::{NullSpace, Posture};
+use controller_core::joint::{DOF, JointState, JointVector, diagonal};
+use controller_core::law::{NullDamping, NullSpace, Posture};
 use controller_core::measurement::Reference;
 use controller_core::model::{ArmParameters, LWR_IV};
-use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task};
+use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task, TaskKind, TaskReference};
 use serde::{Deserialize, Deserializer};
 
 use crate::contact::{Contacts, Hand, Push};
@@ -21,6 +22,7 @@ use crate::metrics::Metric;
 use crate::names::Named;
 use crate::plant::{PlantKind, PlantModel};
 
+pub use geometry::orientation;
 pub use point::PointSpec;
 pub use reference::ReferenceSpec;
 
@@ -74,10 +76,24 @@ pub struct Scenario {
     pub limits: Vec<Limit>,
 }
 
+/// What a level tracks.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum TaskSpec {
+    /// The position of the point.
+    #[default]
+    Position,
+    /// The orientation of the point's link.
+    Orientation,
+}
+
 /// One task level.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LevelSpec {
+    /// Position or orientation.
+    #[serde(default)]
+    pub task: TaskSpec,
     /// Controlled point.
     pub point: PointSpec,
     /// Controlled base-plate axes, such as "xyz".
@@ -110,12 +126,20 @@ pub struct NullSpaceSpec {
     /// D \[Nms/rad\], diagonal.
     #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
+    /// c \[1/s\] of the inertia-shaped damping D = c M that takes the place of
+    /// `damping` where the loop has dead time.
+    #[serde(default = "default_damping_rate")]
+    pub damping_rate: f64,
     /// Where q_d comes from.
     #[serde(default)]
     pub posture: PostureSpec,
     /// K of (14) \[1/s\], for the acceleration-level controllers.
     #[serde(default = "default_rate_gain")]
     pub rate_gain: f64,
+}
+
+fn default_damping_rate() -> f64 {
+    10.0
 }
 
 fn default_rate_gain() -> f64 {
@@ -270,6 +294,11 @@ impl Scenario {
                 GAIN_MAX,
             )?;
         }
+        positive(
+            "null_space.damping_rate",
+            self.null_space.damping_rate,
+            GAIN_MAX,
+        )?;
         in_range(
             "null_space.rate_gain",
             self.null_space.rate_gain,
@@ -288,7 +317,7 @@ impl Scenario {
         for (number, limit) in (1..).zip(&self.limits) {
             let place = |error: Invalid| error.within(format_args!("limit {number}"));
             PlantKind::from_name(&limit.plant).map_err(place)?;
-            Metric::parse(&limit.metric, self.levels.len()).map_err(place)?;
+            Metric::parse(&limit.metric, &self.levels).map_err(place)?;
             positive("below", limit.below, 1e9).map_err(place)?;
         }
         Ok(())
@@ -319,14 +348,19 @@ impl Scenario {
         ((self.duration_s / self.cycle_s()) + 1e-6).floor().max(1.0) as usize
     }
 
-    /// The configuration of the controller core.
+    /// The configuration of the controller core for a loop with `dead_cycles`
+    /// cycles between measurement and torque.
     #[must_use]
-    pub fn controller_config(&self) -> ControllerConfig<f64> {
+    pub fn controller_config(&self, dead_cycles: u8) -> ControllerConfig<f64> {
         ControllerConfig {
             tasks: self.levels.iter().map(LevelSpec::task).collect(),
             null_space: NullSpace {
                 stiffness: diagonal(self.null_space.stiffness),
-                damping: diagonal(self.null_space.damping),
+                damping: if dead_cycles == 0 {
+                    NullDamping::Joint(diagonal(self.null_space.damping))
+                } else {
+                    NullDamping::Inertia(self.null_space.damping_rate)
+                },
                 posture: match self.null_space.posture {
                     PostureSpec::Constant => Posture::Constant,
                     PostureSpec::IntegralCoupled => Posture::IntegralCoupled,
@@ -335,7 +369,7 @@ impl Scenario {
             },
             observer_gain: JointVector::repeat(self.observer.gain),
             cycle_s: self.cycle_s(),
-            dead_cycles: 0,
+            dead_cycles,
         }
     }
 
@@ -345,31 +379,25 @@ impl Scenario {
         Contacts::new(&self.pushes, &self.hands)
     }
 
-    /// The reference at time `t_s`, about the points' positions at the start.
+    /// The reference at time `t_s`, from where the levels are at the start.
     #[must_use]
-    pub fn reference(&self, origins: &Origins, t_s: f64) -> Reference<f64> {
-        let tasks = self.levels.iter().zip(&origins.0);
+    pub fn reference(&self, origins: &[TaskReference<f64>], t_s: f64) -> Reference<f64> {
+        let levels = self.levels.iter().zip(origins);
         Reference {
-            tasks: tasks
-                .map(|(level, origin)| level.reference.trajectory().sample(origin, t_s))
+            tasks: levels
+                .map(|(level, origin)| level.reference.sample(origin, t_s))
                 .collect(),
             posture: self.start(),
         }
     }
 
-    /// Where the levels' points are at the start.
+    /// Where the levels' points and frames are at the start, base-plate frame.
     #[must_use]
-    pub fn origins(&self) -> Origins {
-        let model = PlantModel::new(self.arm());
-        let state = controller_core::joint::JointState {
-            q: self.start(),
-            dq: JointVector::zeros(),
-        };
-        let position = |level: &LevelSpec| {
-            let point = level.point.resolve();
-            model.point(&state, point.link, &point.offset).0
-        };
-        Origins(self.levels.iter().map(position).collect())
+    pub fn origins(&self) -> Vec<TaskReference<f64>> {
+        self.levels
+            .iter()
+            .map(|level| level.place(&self.start()))
+            .collect()
     }
 }
 
@@ -383,10 +411,6 @@ pub(crate) fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64;
         ))
     })
 }
-
-/// Positions of the levels' points at the start \[m\], base-plate frame.
-#[derive(Clone, Debug)]
-pub struct Origins(Vec<controller_core::joint::Vector3<f64>>);
 
 impl LevelSpec {
     fn validate(&self) -> Result<(), Invalid> {
@@ -413,7 +437,30 @@ impl LevelSpec {
                 positive(name, value, GAIN_MAX)?;
             }
         }
+        if self.reference.is_rotation() == Some(self.task != TaskSpec::Orientation) {
+            let (given, allowed) = match self.task {
+                TaskSpec::Position => ("swing", "hold, move, circle, spiral for a position"),
+                TaskSpec::Orientation => ("a motion of a point", "hold, swing for an orientation"),
+            };
+            return Err(Invalid::new("reference", given, allowed));
+        }
         self.reference.validate()
+    }
+
+    /// Where the level's point and frame are in a posture \[rad\], at rest.
+    #[must_use]
+    pub fn place(&self, q: &JointVector<f64>) -> TaskReference<f64> {
+        let state = JointState {
+            q: *q,
+            dq: JointVector::zeros(),
+        };
+        let point = self.point.resolve();
+        let orientation = geometry::orientation(q, point.link);
+        let (x, _) = PlantModel::new(&LWR_IV).point(&state, point.link, &point.offset);
+        TaskReference {
+            orientation,
+            ..TaskReference::rest(x)
+        }
     }
 
     /// The core's task. The level must be valid.
@@ -433,18 +480,24 @@ impl LevelSpec {
                 })
             }
         };
-        Task::diagonal(
-            self.point.resolve(),
-            axes,
-            spread(&self.stiffness),
-            spread(&self.damping),
-        )
+        let kind = match self.task {
+            TaskSpec::Position => TaskKind::Position,
+            TaskSpec::Orientation => TaskKind::Orientation,
+        };
+        let gains = (spread(&self.stiffness), spread(&self.damping));
+        Task {
+            kind,
+            ..Task::diagonal(self.point.resolve(), axes, gains.0, gains.1)
+        }
     }
 
     /// "flange xyz".
     #[must_use]
     pub fn label(&self) -> String {
-        format!("{} {}", self.point.label(), self.axes)
+        match self.task {
+            TaskSpec::Position => format!("{} {}", self.point.label(), self.axes),
+            TaskSpec::Orientation => format!("{} about {}", self.point.label(), self.axes),
+        }
     }
 }
 

@@ -96,7 +96,7 @@ pub fn judge(
     });
     applies
         .filter_map(|limit| {
-            let metric = Metric::parse(&limit.metric, levels.len()).ok()?;
+            let metric = Metric::parse(&limit.metric, &scenario.levels).ok()?;
             let value = metric.value(levels);
             Some(Acceptance {
                 metric: limit.metric.clone(),

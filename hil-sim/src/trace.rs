@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use controller_core::joint::{DOF, JointState, JointVector};
 
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, TaskSpec};
 
 /// What a row shows.
 pub struct Row<'a> {
@@ -25,11 +25,11 @@ pub struct Row<'a> {
 /// A level's part of a row.
 #[derive(Clone, Debug, Default)]
 pub struct LevelRow {
-    /// Desired coordinates of its axes \[m\].
+    /// Desired coordinates of its axes \[m\], or the desired quaternion.
     pub desired: Vec<f64>,
-    /// True coordinates of its axes \[m\].
+    /// True coordinates of its axes \[m\], or the true quaternion.
     pub actual: Vec<f64>,
-    /// Norm of their difference \[m\].
+    /// Norm of their difference \[m\], or of the orientation error \[rad\].
     pub error: f64,
 }
 
@@ -51,11 +51,15 @@ impl<W: Write> Trace<W> {
             }
         }
         for (number, level) in (1..).zip(&scenario.levels) {
-            for axis in level.axes.chars() {
-                write!(out, ",x{number}_des_{axis}")?;
+            let coordinates: Vec<_> = match level.task {
+                TaskSpec::Position => level.axes.chars().map(String::from).collect(),
+                TaskSpec::Orientation => ["qw", "qx", "qy", "qz"].map(String::from).to_vec(),
+            };
+            for coordinate in &coordinates {
+                write!(out, ",x{number}_des_{coordinate}")?;
             }
-            for axis in level.axes.chars() {
-                write!(out, ",x{number}_{axis}")?;
+            for coordinate in &coordinates {
+                write!(out, ",x{number}_{coordinate}")?;
             }
             write!(out, ",e{number}")?;
         }

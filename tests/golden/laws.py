@@ -26,6 +26,7 @@ LEVELS = {
     "three levels": [("flange", "xyz"), ("wrist", "xy")],
     # Positions resolve six rows: the last joint moves no point of its axis.
     "six rows": [("flange", "xyz"), ("elbow", "x"), ("wrist", "yz")],
+    "orientation": [("flange", "xyz"), ("flange", "about yz")],
     "single rows": [("wrist", "z"), ("flange", "y"), ("elbow", "x"), ("forearm", "z")],
 }
 CONTROLLERS = [
@@ -55,18 +56,36 @@ def terms(model, data, arm, state):
     levels = []
     for level in state["levels"]:
         frame = model.getFrameId(level["point"])
-        pick = [AXES.index(axis) for axis in level["axes"]]
+        axes = [AXES.index(axis) for axis in level["axes"]]
+        turns = level.get("task") == "orientation"
+        pick = [3 + axis for axis in axes] if turns else axes
         jacobian = frame_jacobian(model, data, q, frame)[pick]
-        x = data.oMf[frame].translation.copy()[pick]
         derivative = jacobian_derivative(model, data, q, dq, frame)[pick]
         desired = {key: np.array(level[key]) for key in ("x", "dx", "ddx", "kp", "kd")}
+        if turns:
+            x, error = orientation_error(desired["x"], data.oMf[frame].rotation)
+            error = error[axes]
+        else:
+            x = data.oMf[frame].translation.copy()[pick]
+            error = desired["x"] - x
         command = (
             desired["ddx"]
             + desired["kd"] * (desired["dx"] - jacobian @ dq)
-            + desired["kp"] * (desired["x"] - x)
+            + desired["kp"] * error
         )
         levels.append({"x": x, "j": jacobian, "jdot": derivative, "command": command})
     return m, c, g, levels
+
+
+def orientation_error(desired, rotation):
+    """The actual quaternion (w, x, y, z) and 2 sin(theta / 2) times the axis of
+    the shortest rotation from it to the desired one."""
+    x, y, z, w = pin.Quaternion(rotation).coeffs()
+    wd, xd, yd, zd = desired / np.linalg.norm(desired)
+    turn = pin.Quaternion(wd, xd, yd, zd).toRotationMatrix() @ rotation.T
+    angle_axis = pin.log3(turn)
+    angle = np.linalg.norm(angle_axis)
+    return np.array([w, x, y, z]), 2.0 * np.sin(angle / 2.0) * angle_axis / angle
 
 
 def projected(m, levels):
@@ -201,6 +220,7 @@ def random_state(arm, rng, levels, controller, with_observer):
     q = rng.uniform(-1, 1, DOF) * column(arm, "position_limit")
     dq = rng.uniform(-0.5, 0.5, DOF) * column(arm, "speed_limit")
     signed = lambda n, scale: rng.uniform(-scale, scale, n)
+    rows = lambda axes: len(axes.removeprefix("about "))
     state = {
         "robot": "lwr_iv",
         "q": q,
@@ -208,13 +228,16 @@ def random_state(arm, rng, levels, controller, with_observer):
         "residual": signed(DOF, 10.0),
         "levels": [
             {
+                "task": "orientation" if axes.startswith("about ") else "position",
                 "point": point,
-                "axes": axes,
-                "x": signed(len(axes), 0.5),
-                "dx": signed(len(axes), 0.5),
-                "ddx": signed(len(axes), 2.0),
-                "kp": rng.uniform(10, 400, len(axes)),
-                "kd": rng.uniform(1, 40, len(axes)),
+                "axes": axes.removeprefix("about "),
+                "x": signed(4, 0.5) + [1.0, 0.0, 0.0, 0.0]
+                if axes.startswith("about ")
+                else signed(len(axes), 0.5),
+                "dx": signed(rows(axes), 0.5),
+                "ddx": signed(rows(axes), 2.0),
+                "kp": rng.uniform(10, 400, rows(axes)),
+                "kd": rng.uniform(1, 40, rows(axes)),
             }
             for point, axes in levels
         ],

@@ -44,7 +44,7 @@ fn the_ideal_arm_keeps_the_circle_and_its_pushes_leave_no_trace() {
     assert_eq!(free.levels[0].rms_inside_mm, None);
 
     let pushed = run(PlantKind::Ideal, true, ControllerKind::Hierarchical, 1).0;
-    let plateau = pushed.levels[0].worst_plateau_mm().expect("contacts");
+    let plateau = pushed.levels[0].worst_plateau().expect("contacts");
     assert!(plateau < 0.05 && max(&pushed) < 0.9, "{pushed:?}");
     // The observer has found the push: it is far below that of the pushes, 8 Nm.
     assert!(pushed.residual.rms_error_nm.expect("cycles") < 0.1);

@@ -157,7 +157,7 @@ fn warn_of_damping(
     experiment: &Experiment,
     controller: &controller_core::controller::Controller<f64>,
 ) {
-    let bound = experiment.scenario.controller_config().damping_bound();
+    let bound = experiment.scenario.controller_config(0).damping_bound();
     let mode = controller.fastest_mode();
     let value = mode.rate * experiment.scenario.cycle_s();
     if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {
@@ -197,8 +197,8 @@ fn footer(summary: &Summary, out: &Path) -> String {
 /// One row per run and level.
 fn table(runs: &[&Summary]) -> String {
     let mut text = format!(
-        "{:<20} {:<14} {:>9} {:>9} {:>11} {:>12}  {}\n",
-        "controller", "level", "rms mm", "max mm", "plateau mm", "r error Nm", "verdict"
+        "{:<28} {:<26} {:>9} {:>9} {:>11} {:>12}  {}\n",
+        "controller", "level", "rms", "max", "plateau", "r error Nm", "verdict"
     );
     for run in runs {
         for (number, level) in (1..).zip(&run.levels) {
@@ -211,12 +211,12 @@ fn table(runs: &[&Summary]) -> String {
                 }
             };
             text += &format!(
-                "{:<20} {:<14} {:>9} {:>9} {:>11} {:>12}  {}\n",
+                "{:<28} {:<26} {:>9} {:>9} {:>11} {:>12}  {}\n",
                 shown(first, run.controller),
-                format!("{number} {}", level.name),
-                figure(level.rms_mm),
-                figure(level.max_mm),
-                figure(level.worst_plateau_mm()),
+                format!("{number} {}, {}", level.name, level.unit().suffix()),
+                figure(level.rms()),
+                figure(level.max()),
+                figure(level.worst_plateau()),
                 shown(first, &figure(run.residual.rms_error_nm)),
                 shown(first, run.verdict.name()),
             );

@@ -2,13 +2,14 @@
 
 use controller_core::joint::{DOF, JointState, Vector3};
 use controller_core::model::{ArmParameters, LWR_IV};
-use controller_core::task::{Axes, MAX_ROWS, Task, TaskReference};
+use controller_core::orientation::Quaternion;
+use controller_core::task::{Axes, MAX_ROWS, Task, TaskKind, TaskReference};
 use serde::Deserialize;
 
 use crate::controllers::ControllerKind;
 use crate::invalid::{Invalid, in_range};
 use crate::names::Named;
-use crate::scenario::{PointSpec, joints};
+use crate::scenario::{PointSpec, TaskSpec, joints};
 
 /// One control cycle. SI units, base-plate frame.
 #[derive(Clone, Debug, Deserialize)]
@@ -41,11 +42,14 @@ pub struct Input {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Level {
+    /// Position or orientation.
+    #[serde(default)]
+    pub task: TaskSpec,
     /// Controlled point.
     pub point: PointSpec,
     /// Controlled axes, such as "xyz".
     pub axes: String,
-    /// x_d \[m\].
+    /// x_d \[m\]; of an orientation the quaternion w, x, y, z.
     pub x: Vec<f64>,
     /// dx_d \[m/s\].
     pub dx: Vec<f64>,
@@ -212,15 +216,20 @@ impl Level {
             ));
         };
         let rows = axes.count();
-        for (name, values) in [
-            ("x", &self.x),
-            ("dx", &self.dx),
-            ("ddx", &self.ddx),
-            ("kp", &self.kp),
-            ("kd", &self.kd),
+        let coordinates = if self.task == TaskSpec::Orientation {
+            4
+        } else {
+            rows
+        };
+        for (name, values, count) in [
+            ("x", &self.x, coordinates),
+            ("dx", &self.dx, rows),
+            ("ddx", &self.ddx, rows),
+            ("kp", &self.kp, rows),
+            ("kd", &self.kd, rows),
         ] {
-            if values.len() != rows {
-                let allowed = format!("{rows} for axes \"{}\"", self.axes);
+            if values.len() != count {
+                let allowed = format!("{count} for axes \"{}\"", self.axes);
                 return Err(Invalid::new(
                     name,
                     format_args!("{} values", values.len()),
@@ -228,6 +237,10 @@ impl Level {
                 ));
             }
             finite(name, values)?;
+        }
+        if self.task == TaskSpec::Orientation {
+            let norm = self.x.iter().map(|x| x * x).sum::<f64>().sqrt();
+            in_range("norm of x", norm, 0.5, 2.0)?;
         }
         Ok(rows)
     }
@@ -251,10 +264,19 @@ impl Level {
             spread(&self.kd),
         );
         let vector = |values: &[f64]| Vector3::from(spread(values));
+        let (kind, place) = match self.task {
+            TaskSpec::Position => (TaskKind::Position, TaskReference::rest(vector(&self.x))),
+            TaskSpec::Orientation => {
+                let quaternion =
+                    Quaternion::from_iterator(self.x.iter().copied().chain([0.0; 4]).take(4));
+                (TaskKind::Orientation, TaskReference::facing(quaternion))
+            }
+        };
+        let task = Task { kind, ..task };
         let reference = TaskReference {
-            x: vector(&self.x),
             dx: vector(&self.dx),
             ddx: vector(&self.ddx),
+            ..place
         };
         (task, reference)
     }

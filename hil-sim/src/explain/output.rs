@@ -3,7 +3,8 @@
 use controller_core::joint::{DOF, JointMatrix, JointVector};
 use controller_core::law::{Cycle, TorqueDemand};
 use controller_core::limits::TorqueCommand;
-use controller_core::task::Task;
+use controller_core::orientation;
+use controller_core::task::{Task, TaskKind};
 use serde::Serialize;
 
 /// A matrix as an array of rows.
@@ -90,12 +91,23 @@ impl LevelOutput {
         let (rows, hierarchy) = (cycle.rows, cycle.hierarchy);
         let cholesky = &cycle.dynamics.cholesky;
         let range = hierarchy.level_range(level);
-        let position = cycle.kinematics.point(&task.point).x;
-        let controlled = (0..3).filter(|&axis| task.axes.xyz[axis]);
+        let x = match task.kind {
+            TaskKind::Position => {
+                let position = cycle.kinematics.point(&task.point).x;
+                (0..3)
+                    .filter(|&axis| task.axes.xyz[axis])
+                    .map(|axis| position[axis])
+                    .collect()
+            }
+            TaskKind::Orientation => {
+                let rotation = cycle.kinematics.link(task.point.link).rotation;
+                orientation::of_rotation(&rotation).as_slice().to_vec()
+            }
+        };
         let lambda = hierarchy.task_inertia(level);
         let pinv = hierarchy.jbar_pinv(level, cholesky);
         Self {
-            x: controlled.map(|axis| position[axis]).collect(),
+            x,
             jacobian: rows.jacobian[range.clone()].iter().map(list).collect(),
             jacobian_dot: rows.jacobian_dot[range.clone()].iter().map(list).collect(),
             jacobian_dot_dq: rows.bias[range.clone()].to_vec(),

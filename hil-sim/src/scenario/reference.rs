@@ -1,6 +1,8 @@
 //! Reference motions in files.
 
-use controller_core::trajectory::{Plane, Trajectory};
+use controller_core::joint::Vector3;
+use controller_core::task::TaskReference;
+use controller_core::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
 use crate::invalid::{Invalid, in_range, positive};
@@ -22,6 +24,22 @@ pub enum ReferenceSpec {
     Circle(Turn),
     /// A spiral: a circle whose radius takes all of `growth_s` to grow.
     Spiral(Turn),
+    /// An orientation that turns to and fro about an axis.
+    Swing(Swing),
+}
+
+/// Turning to and fro about a base-plate axis.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Swing {
+    /// Axis, normalised when read.
+    pub axis: [f64; 3],
+    /// Largest angle \[deg\].
+    pub angle_deg: f64,
+    /// Time of one swing \[s\].
+    pub period_s: f64,
+    /// Time in which the angle grows \[s\].
+    pub growth_s: f64,
 }
 
 /// Turning in a plane.
@@ -68,28 +86,64 @@ impl ReferenceSpec {
                 in_range("period_s", turn.period_s, 0.05, 3600.0)?;
                 in_range("growth_s", turn.growth_s, 0.05, 3600.0).map(drop)
             }
+            Self::Swing(swing) => {
+                let norm = Vector3::from(swing.axis).norm();
+                in_range("length of axis", norm, 1e-3, 1e3)?;
+                in_range("angle_deg", swing.angle_deg, -350.0, 350.0)?;
+                in_range("period_s", swing.period_s, 0.05, 3600.0)?;
+                in_range("growth_s", swing.growth_s, 0.05, 3600.0).map(drop)
+            }
         }
     }
 
-    /// The core's trajectory.
+    /// Whether it is for orientations; none where it is for both kinds.
     #[must_use]
-    pub fn trajectory(&self) -> Trajectory<f64> {
+    pub fn is_rotation(&self) -> Option<bool> {
         match self {
-            Self::Hold => Trajectory::Hold,
+            Self::Hold => None,
+            Self::Swing(_) => Some(true),
+            Self::Move { .. } | Self::Circle(_) | Self::Spiral(_) => Some(false),
+        }
+    }
+
+    /// Reference at time `t_s` from where the level is at the start.
+    #[must_use]
+    pub fn sample(&self, origin: &TaskReference<f64>, t_s: f64) -> TaskReference<f64> {
+        let trajectory = match self {
+            Self::Hold => return *origin,
+            Self::Swing(swing) => return swing.rotation().sample(&origin.orientation, t_s),
             Self::Move { by_m, duration_s } => Trajectory::Move {
                 by: (*by_m).into(),
                 duration_s: *duration_s,
             },
-            Self::Circle(turn) | Self::Spiral(turn) => Trajectory::Turn {
-                plane: match turn.plane {
-                    PlaneSpec::Xy => Plane::Xy,
-                    PlaneSpec::Xz => Plane::Xz,
-                    PlaneSpec::Yz => Plane::Yz,
-                },
-                radius_m: turn.radius_m,
-                period_s: turn.period_s,
-                growth_s: turn.growth_s,
+            Self::Circle(turn) | Self::Spiral(turn) => turn.trajectory(),
+        };
+        trajectory.sample(&origin.x, t_s)
+    }
+}
+
+impl Swing {
+    fn rotation(&self) -> Rotation<f64> {
+        Rotation::Swing {
+            axis: Vector3::from(self.axis).normalize(),
+            amplitude_rad: self.angle_deg.to_radians(),
+            period_s: self.period_s,
+            growth_s: self.growth_s,
+        }
+    }
+}
+
+impl Turn {
+    fn trajectory(&self) -> Trajectory<f64> {
+        Trajectory::Turn {
+            plane: match self.plane {
+                PlaneSpec::Xy => Plane::Xy,
+                PlaneSpec::Xz => Plane::Xz,
+                PlaneSpec::Yz => Plane::Yz,
             },
+            radius_m: self.radius_m,
+            period_s: self.period_s,
+            growth_s: self.growth_s,
         }
     }
 }
