@@ -174,6 +174,27 @@ impl<T: Real> TorqueDemand<T> {
         let Cycle {
             dynamics,
             hierarchy,
+            ..
+        } = cycle;
+        let whitened = Self::whitened(cycle, residual);
+        Self(
+            dynamics
+                .cholesky
+                .lower_times(&hierarchy.rotate_back(&whitened))
+                + dynamics.coriolis
+                + dynamics.gravity,
+        )
+    }
+
+    /// The demand less C dq + g in the coordinates of Q: entries 0..m belong to
+    /// the task rows, in priority order, the others to the null space. The
+    /// torque is L Q^T times this.
+    #[must_use]
+    #[inline]
+    pub fn whitened(cycle: &Cycle<'_, T>, residual: &JointVector<T>) -> JointVector<T> {
+        let Cycle {
+            dynamics,
+            hierarchy,
             command,
             ..
         } = cycle;
@@ -181,12 +202,7 @@ impl<T: Real> TorqueDemand<T> {
         let task = hierarchy.task_part(&hierarchy.rotate(&cholesky.solve_lower(residual)));
         let null =
             hierarchy.null_part(&hierarchy.rotate(&cholesky.solve_lower(&command.null_force)));
-        let whitened = command.task_acceleration - task + null;
-        Self(
-            cholesky.lower_times(&hierarchy.rotate_back(&whitened))
-                + dynamics.coriolis
-                + dynamics.gravity,
-        )
+        command.task_acceleration - task + null
     }
 }
 

@@ -1,6 +1,7 @@
 //! The controllers that are compared on equal terms: the product's law and
 //! others, all inside the core's cycle with its checks, observer and limits.
 
+use controller_core::dynamics::Dynamics;
 use controller_core::hierarchy::Hierarchy;
 use controller_core::joint::{JointMatrix, JointVector};
 use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
@@ -54,22 +55,62 @@ pub struct LawGains {
     pub stiffness: JointMatrix<f64>,
 }
 
-impl ControllerKind {
-    /// The torque demanded by this law.
+/// A law's demand, split by priority.
+#[derive(Clone, Debug)]
+pub struct Decision {
+    /// Coordinates of the demand less C dq + g and the compensation that no
+    /// level owns: task rows in priority order, then the null space.
+    coordinates: JointVector<f64>,
+    hierarchy: Hierarchy<f64>,
+    /// Whether the coordinates are accelerations rather than whitened forces.
+    accelerations: bool,
+    /// Compensation \[Nm\] that no level owns.
+    compensation: JointVector<f64>,
+}
+
+impl Decision {
+    /// The demanded torque \[Nm\].
     #[must_use]
-    pub fn demand(self, cycle: &Cycle<'_, f64>, gains: &LawGains) -> TorqueDemand<f64> {
+    pub fn demand(&self, dynamics: &Dynamics<f64>) -> TorqueDemand<f64> {
+        let torque =
+            self.torque(dynamics, &self.coordinates) + dynamics.coriolis + dynamics.gravity;
+        TorqueDemand(torque + self.compensation)
+    }
+
+    /// The part of the torque \[Nm\] that the levels below `level` (from 0) and the
+    /// null space ask for.
+    #[must_use]
+    pub fn below(&self, dynamics: &Dynamics<f64>, level: usize) -> JointVector<f64> {
+        let end = self.hierarchy.level_range(level).end;
+        let mut lower = self.coordinates;
+        lower.iter_mut().take(end).for_each(|entry| *entry = 0.0);
+        self.torque(dynamics, &lower)
+    }
+
+    fn torque(&self, dynamics: &Dynamics<f64>, coordinates: &JointVector<f64>) -> JointVector<f64> {
+        let turned = self.hierarchy.rotate_back(coordinates);
+        if self.accelerations {
+            dynamics.mass_matrix * turned
+        } else {
+            dynamics.cholesky.lower_times(&turned)
+        }
+    }
+}
+
+impl ControllerKind {
+    /// What this law decides.
+    #[must_use]
+    pub fn decide(self, cycle: &Cycle<'_, f64>, gains: &LawGains) -> Decision {
         match self {
-            Self::Hierarchical => TorqueDemand::hierarchical(cycle),
-            Self::NoObserver => TorqueDemand::compensating(cycle, &JointVector::zeros()),
+            Self::Hierarchical => Decision::levels(cycle, cycle.residual),
+            Self::NoObserver => Decision::levels(cycle, &JointVector::zeros()),
             Self::Literal => literal(cycle, cycle.command.null_force),
             Self::AsPrinted => {
                 let stiffness = gains.stiffness * (cycle.posture - cycle.state.q);
                 literal(cycle, cycle.command.null_force - stiffness * 2.0)
             }
-            Self::AccelerationLevel => acceleration_level(cycle, &gains.rate),
-            Self::AccelerationLevelEstimate => {
-                TorqueDemand(acceleration_level(cycle, &gains.rate).0 - cycle.residual)
-            }
+            Self::AccelerationLevel => acceleration_level(cycle, gains, JointVector::zeros()),
+            Self::AccelerationLevelEstimate => acceleration_level(cycle, gains, -cycle.residual),
         }
     }
 
@@ -89,9 +130,21 @@ impl ControllerKind {
     }
 }
 
+impl Decision {
+    /// The product's law with `residual` compensated on the tasks.
+    fn levels(cycle: &Cycle<'_, f64>, residual: &JointVector<f64>) -> Self {
+        Self {
+            coordinates: TorqueDemand::whitened(cycle, residual),
+            hierarchy: *cycle.hierarchy,
+            accelerations: false,
+            compensation: JointVector::zeros(),
+        }
+    }
+}
+
 /// (34) as printed: every level is given d(Jbar_i dq)/dt = its command, as if
 /// the levels above it stood still.
-fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> TorqueDemand<f64> {
+fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> Decision {
     let mut wanted = cycle.rows.wanted;
     for (wanted, bias) in wanted.iter_mut().zip(jbar_dot_dq(cycle)) {
         *wanted -= bias;
@@ -100,10 +153,13 @@ fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> TorqueDemand
         task_acceleration: cycle.hierarchy.solve_uncoupled(&wanted),
         null_force,
     };
-    TorqueDemand::hierarchical(&Cycle {
-        command: &command,
-        ..*cycle
-    })
+    Decision::levels(
+        &Cycle {
+            command: &command,
+            ..*cycle
+        },
+        cycle.residual,
+    )
 }
 
 /// (dJbar_i/dt) dq per row \[m/s2\].
@@ -146,12 +202,19 @@ fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
 ///
 /// The hierarchy of Moore-Penrose inverses is the same row-ordered
 /// factorisation, of J instead of J L^-T.
-fn acceleration_level(cycle: &Cycle<'_, f64>, rate_gain: &JointVector<f64>) -> TorqueDemand<f64> {
+fn acceleration_level(
+    cycle: &Cycle<'_, f64>,
+    gains: &LawGains,
+    compensation: JointVector<f64>,
+) -> Decision {
     let hierarchy = Hierarchy::new(cycle.rows, &Cholesky::identity());
     let tasks = hierarchy.solve(&cycle.rows.acceleration());
-    let braking = -rate_gain.component_mul(&cycle.state.dq);
+    let braking = -gains.rate.component_mul(&cycle.state.dq);
     let null = hierarchy.null_part(&hierarchy.rotate(&braking));
-    let ddq = hierarchy.rotate_back(&(tasks + null));
-    let dynamics = cycle.dynamics;
-    TorqueDemand(dynamics.mass_matrix * ddq + dynamics.coriolis + dynamics.gravity)
+    Decision {
+        coordinates: tasks + null,
+        hierarchy,
+        accelerations: true,
+        compensation,
+    }
 }

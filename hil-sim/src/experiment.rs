@@ -111,7 +111,7 @@ impl Experiment {
             };
             let reference = scenario.reference(&origins, t_s);
             let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
-                self.controller.demand(cycle, &gains)
+                self.controller.decide(cycle, &gains).demand(cycle.dynamics)
             });
             stop = step.status.fault.map(Stop::Fault);
             if stop.is_some() {

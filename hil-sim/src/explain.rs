@@ -77,7 +77,7 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
         rate: input.null_space.rate_gain.into(),
         stiffness: null_space.stiffness,
     };
-    let demand = controller.demand(&cycle, &gains);
+    let demand = controller.decide(&cycle, &gains).demand(&dynamics);
     let limited = TorqueCommand::new(&demand, model.torque_limit())
         .map_err(|fault| Invalid::line(fault).within("the torque of this state"))?;
     Ok(Output::new(
