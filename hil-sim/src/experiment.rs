@@ -1,24 +1,27 @@
 //! One run: plant, controller and contacts in lock-step, in this process.
 
-use std::io::{self, Write};
+mod level;
 
-use controller_core::controller::{Controller, ControllerState};
+use std::io;
+
+use controller_core::controller::{Controller, ControllerState, Step};
 use controller_core::fault::{Fault, FaultKind};
-use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::measurement::{Measurement, Reference, SPEED_FACTOR};
+use controller_core::joint::{JointState, JointVector};
+use controller_core::law::Cycle;
+use controller_core::measurement::{Measurement, SPEED_FACTOR};
 use controller_core::model::ArmModel;
-use controller_core::orientation;
-use controller_core::task::Axes;
 
 use crate::contact::Contacts;
-use crate::controllers::{ControllerKind, LawGains};
+use crate::controllers::{ControllerKind, Decision, LawGains};
 use crate::invalid::Invalid;
-use crate::metrics::{FaultCounts, Metrics, Sample};
+use crate::metrics::{FaultCounts, Metrics};
 use crate::names::{Named, NullStiffness};
-use crate::plant::{Plant, PlantKind};
-use crate::scenario::{self, Scenario, TaskSpec};
+use crate::plant::{Plant, PlantKind, PlantModel};
+use crate::scenario::Scenario;
 use crate::summary::{self, Summary, Verdict};
-use crate::trace::{LevelRow, Row, Trace};
+
+pub use level::LevelInstant;
+use level::Places;
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]
@@ -35,6 +38,46 @@ pub struct Experiment {
     pub null_stiffness: NullStiffness,
     /// Seed of mismatch and noise.
     pub seed: u64,
+}
+
+/// One cycle of a run, as it is recorded.
+pub struct Instant<'a> {
+    /// Time \[s\].
+    pub t_s: f64,
+    /// True joint state.
+    pub state: &'a JointState<f64>,
+    /// Result of the control cycle.
+    pub step: &'a Step<f64>,
+    /// True tau_ext of (6) \[Nm\]: minus the joint torque of the contacts.
+    pub tau_ext: &'a JointVector<f64>,
+    /// Largest force of a hand \[N\].
+    pub hand_force_n: f64,
+    /// |R_kk| per task row.
+    pub conditioning: &'a [f64],
+    /// Every level, highest priority first.
+    pub levels: &'a [LevelInstant],
+    /// The arm.
+    pub plant: &'a PlantModel,
+}
+
+/// What the control cycle knew beyond its result.
+#[derive(Default)]
+struct Insight {
+    conditioning: Vec<f64>,
+    /// Torque asked for below each level \[Nm\].
+    below: Vec<JointVector<f64>>,
+}
+
+impl Insight {
+    fn new(cycle: &Cycle<'_, f64>, decision: &Decision) -> Self {
+        let hierarchy = cycle.hierarchy;
+        Self {
+            conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
+            below: (0..hierarchy.levels())
+                .map(|level| decision.below(cycle.dynamics, level))
+                .collect(),
+        }
+    }
 }
 
 /// Why a run ended early.
@@ -58,16 +101,17 @@ impl Experiment {
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
     }
 
-    /// Runs it and writes the trace. `progress` is told the share done, 0 to 1.
+    /// Runs it. Every cycle is shown to `sink` and to the figures of the summary;
+    /// `progress` is told the share done, 0 to 1.
     ///
     /// # Errors
-    /// Those of `trace`.
-    pub fn run<W: Write>(
+    /// Those of `sink`.
+    pub fn run(
         &self,
         controller: &Controller<f64>,
-        trace: W,
+        mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
         mut progress: impl FnMut(f64),
-    ) -> io::Result<(Summary, W)> {
+    ) -> io::Result<Summary> {
         let scenario = &self.scenario;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
         let mut contacts = if self.contacts {
@@ -75,6 +119,7 @@ impl Experiment {
         } else {
             Contacts::none()
         };
+        let places = Places::new(scenario);
         let origins = scenario.origins();
         let gains = LawGains {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
@@ -88,12 +133,8 @@ impl Experiment {
             self.seed,
         );
         let mut state = ControllerState::new();
-        let mut metrics = Metrics::new(
-            scenario.levels.len(),
-            &contacts.intervals(),
-            controller.model().position_limit(),
-        );
-        let mut trace = Trace::new(trace, scenario)?;
+        let limits = controller.model().position_limit();
+        let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
         let mut stop = None;
 
         for cycle in 0..cycles {
@@ -110,8 +151,11 @@ impl Experiment {
                 interval_s: cycle_s,
             };
             let reference = scenario.reference(&origins, t_s);
+            let mut insight = Insight::default();
             let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
-                self.controller.decide(cycle, &gains).demand(cycle.dynamics)
+                let decision = self.controller.decide(cycle, &gains);
+                insight = Insight::new(cycle, &decision);
+                decision.demand(cycle.dynamics)
             });
             stop = step.status.fault.map(Stop::Fault);
             if stop.is_some() {
@@ -119,25 +163,26 @@ impl Experiment {
             }
 
             contacts.take_hold(t_s, plant.model(), &truth);
-            let (contact_torque, hand_force) = contacts.joint_torque(t_s, plant.model(), &truth);
-            let levels = self.level_rows(&plant, &truth, &reference);
-            let errors: Vec<_> = levels.iter().map(|level| level.error).collect();
-            metrics.add(&Sample {
+            let (contact_torque, hand_force_n) = contacts.joint_torque(t_s, plant.model(), &truth);
+            let mut levels = places.levels(plant.model(), &truth, &reference);
+            let lower = insight.below.iter().map(|below| (below, &step.torque));
+            for (level, (place, (below, torque))) in
+                levels.iter_mut().zip(places.0.iter().zip(lower))
+            {
+                level.leak = place.leak(plant.model(), &truth, torque, below);
+            }
+            let instant = Instant {
                 t_s,
                 state: &truth,
-                errors: &errors,
-                contact_torque: &contact_torque,
-                hand_force,
                 step: &step,
-            });
-            trace.push(&Row {
-                t_s,
-                state: &truth,
-                torque: &step.torque,
                 tau_ext: &-contact_torque,
-                residual: &step.residual,
+                hand_force_n,
+                conditioning: &insight.conditioning,
                 levels: &levels,
-            })?;
+                plant: plant.model(),
+            };
+            metrics.add(&instant);
+            sink(&instant)?;
             plant.advance(t_s, &step.torque, |t, model, state| {
                 contacts.joint_torque(t, model, state).0
             });
@@ -145,50 +190,7 @@ impl Experiment {
                 progress(cycle as f64 / cycles as f64);
             }
         }
-        Ok((self.summary(&metrics, &contacts, stop), trace.finish()))
-    }
-
-    /// Desired and true coordinates of every level.
-    fn level_rows(
-        &self,
-        plant: &Plant,
-        truth: &JointState<f64>,
-        reference: &Reference<f64>,
-    ) -> Vec<LevelRow> {
-        let levels = self.scenario.levels.iter().zip(&reference.tasks);
-        levels
-            .map(|(level, reference)| {
-                let point = level.point.resolve();
-                let axes = Axes::from_name(&level.axes).unwrap_or(Axes::XYZ);
-                let chosen = || (0..3).filter(|&axis| axes.xyz[axis]);
-                let pick = |v: &Vector3<f64>| chosen().map(|axis| v[axis]).collect::<Vec<_>>();
-                let (desired, actual, difference) = match level.task {
-                    TaskSpec::Position => {
-                        let (x, _) = plant.model().point(truth, point.link, &point.offset);
-                        (pick(&reference.x), pick(&x), reference.x - x)
-                    }
-                    TaskSpec::Orientation => {
-                        let desired = reference.orientation;
-                        let actual = scenario::orientation(&truth.q, point.link);
-                        let error = orientation::error(&desired, &actual);
-                        (
-                            desired.as_slice().to_vec(),
-                            actual.as_slice().to_vec(),
-                            error,
-                        )
-                    }
-                };
-                let error = chosen()
-                    .map(|axis| difference[axis].powi(2))
-                    .sum::<f64>()
-                    .sqrt();
-                LevelRow {
-                    desired,
-                    actual,
-                    error,
-                }
-            })
-            .collect()
+        Ok(self.summary(&metrics, &contacts, stop))
     }
 
     fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {

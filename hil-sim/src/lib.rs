@@ -15,6 +15,7 @@ pub mod invalid;
 pub mod metrics;
 pub mod names;
 pub mod output;
+pub mod paper;
 pub mod plant;
 pub mod scenario;
 pub mod summary;

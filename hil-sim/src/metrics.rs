@@ -1,10 +1,10 @@
 //! Figures of a run, accumulated cycle by cycle.
 
-use controller_core::controller::Step;
-use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
 use crate::contact::Interval;
+use crate::experiment::Instant;
 use crate::invalid::Invalid;
 use crate::scenario::{LevelSpec, TaskSpec};
 
@@ -138,6 +138,8 @@ pub struct LevelFigures {
     pub rms_outside_mm: Option<f64>,
     /// Mean over the last 0.2 s before each contact's force goes down.
     pub plateau_mm: Vec<Option<f64>>,
+    /// Largest task acceleration that lower levels cause \[m/s2\], or \[rad/s2\].
+    pub leak_max: Option<f64>,
     /// The same of an orientation.
     pub rms_mrad: Option<f64>,
     /// The same of an orientation.
@@ -200,6 +202,8 @@ pub struct TorqueFigures {
 pub struct JointFigures {
     /// Travel per joint, largest less smallest position \[deg\].
     pub range_deg: [f64; DOF],
+    /// Distance from the start posture in the last cycle, per joint \[deg\].
+    pub end_offset_deg: [f64; DOF],
 }
 
 /// Cycles in which each limit was active.
@@ -228,23 +232,8 @@ struct LevelSums {
     inside: Rms,
     outside: Rms,
     max: Option<f64>,
+    leak: Option<f64>,
     plateaus: Vec<Mean>,
-}
-
-/// What one cycle contributes.
-pub struct Sample<'a> {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// True joint state.
-    pub state: &'a JointState<f64>,
-    /// Error norm per level \[m\], or \[rad\].
-    pub errors: &'a [f64],
-    /// Joint torque of the contacts \[Nm\], -tau_ext.
-    pub contact_torque: &'a JointVector<f64>,
-    /// Largest force of a hand \[N\].
-    pub hand_force: f64,
-    /// Result of the control cycle.
-    pub step: &'a Step<f64>,
 }
 
 /// Running figures of a run.
@@ -259,6 +248,8 @@ pub struct Metrics {
     highest: [f64; DOF],
     limits: LimitCounts,
     position_limit: JointVector<f64>,
+    first: JointVector<f64>,
+    last: JointVector<f64>,
     hand_force: f64,
     cycles: usize,
 }
@@ -281,21 +272,32 @@ impl Metrics {
             highest: [f64::NEG_INFINITY; DOF],
             limits: LimitCounts::default(),
             position_limit: *position_limit,
+            first: JointVector::zeros(),
+            last: JointVector::zeros(),
             hand_force: 0.0,
             cycles: 0,
         }
     }
 
     /// Adds a cycle.
-    pub fn add(&mut self, sample: &Sample<'_>) {
+    pub fn add(&mut self, sample: &Instant<'_>) {
+        if self.cycles == 0 {
+            self.first = sample.state.q;
+        }
+        self.last = sample.state.q;
         self.cycles += 1;
-        self.hand_force = self.hand_force.max(sample.hand_force);
+        self.hand_force = self.hand_force.max(sample.hand_force_n);
         let inside = self
             .contacts
             .iter()
             .any(|contact| contact.inside(sample.t_s));
-        for (level, &error) in self.levels.iter_mut().zip(sample.errors) {
-            let error = error * 1e3;
+        for (level, shown) in self.levels.iter_mut().zip(sample.levels) {
+            level.leak = Some(
+                level
+                    .leak
+                    .map_or(shown.leak, |largest| largest.max(shown.leak)),
+            );
+            let error = shown.error * 1e3;
             level.all.add(error);
             if inside {
                 level.inside.add(error)
@@ -314,8 +316,7 @@ impl Metrics {
             let (q, torque) = (sample.state.q[joint], sample.step.torque[joint]);
             let residual = sample.step.residual[joint];
             self.residual.add(residual);
-            self.residual_error
-                .add(residual - sample.contact_torque[joint]);
+            self.residual_error.add(residual + sample.tau_ext[joint]);
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
             self.lowest[joint] = self.lowest[joint].min(q);
             self.highest[joint] = self.highest[joint].max(q);
@@ -352,6 +353,7 @@ impl Metrics {
                 rms_inside_mm: mm(sums.inside.value()),
                 rms_outside_mm: mm(sums.outside.value()),
                 plateau_mm,
+                leak_max: sums.leak,
                 rms_mrad: mrad(sums.all.value()),
                 max_mrad: mrad(sums.max),
                 plateau_mrad,
@@ -386,8 +388,10 @@ impl Metrics {
                 .max(0.0)
                 .to_degrees()
         };
+        let offset = |joint: usize| (self.last[joint] - self.first[joint]).abs().to_degrees();
         JointFigures {
             range_deg: std::array::from_fn(range),
+            end_offset_deg: std::array::from_fn(offset),
         }
     }
 

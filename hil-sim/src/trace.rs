@@ -2,36 +2,10 @@
 
 use std::io::{self, Write};
 
-use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::joint::DOF;
 
+use crate::experiment::Instant;
 use crate::scenario::{Scenario, TaskSpec};
-
-/// What a row shows.
-pub struct Row<'a> {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// True joint state.
-    pub state: &'a JointState<f64>,
-    /// Applied torque \[Nm\].
-    pub torque: &'a JointVector<f64>,
-    /// True tau_ext of (6) \[Nm\].
-    pub tau_ext: &'a JointVector<f64>,
-    /// r \[Nm\].
-    pub residual: &'a JointVector<f64>,
-    /// Desired and true coordinates of each level's axes, and the error norm \[m\].
-    pub levels: &'a [LevelRow],
-}
-
-/// A level's part of a row.
-#[derive(Clone, Debug, Default)]
-pub struct LevelRow {
-    /// Desired coordinates of its axes \[m\], or the desired quaternion.
-    pub desired: Vec<f64>,
-    /// True coordinates of its axes \[m\], or the true quaternion.
-    pub actual: Vec<f64>,
-    /// Norm of their difference \[m\], or of the orientation error \[rad\].
-    pub error: f64,
-}
 
 /// Writes rows as they come.
 pub struct Trace<W: Write> {
@@ -71,18 +45,19 @@ impl<W: Write> Trace<W> {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn push(&mut self, row: &Row<'_>) -> io::Result<()> {
-        write!(self.out, "{:.16e}", row.t_s)?;
+    pub fn push(&mut self, instant: &Instant<'_>) -> io::Result<()> {
+        write!(self.out, "{:.16e}", instant.t_s)?;
+        let step = instant.step;
         for vector in [
-            &row.state.q,
-            &row.state.dq,
-            row.torque,
-            row.tau_ext,
-            row.residual,
+            &instant.state.q,
+            &instant.state.dq,
+            &step.torque,
+            instant.tau_ext,
+            &step.residual,
         ] {
             self.values(vector.as_slice())?;
         }
-        for level in row.levels {
+        for level in instant.levels {
             self.values(&level.desired)?;
             self.values(&level.actual)?;
             self.values(&[level.error])?;

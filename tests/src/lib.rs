@@ -7,6 +7,7 @@ use controller_core::model::{ArmModel, LWR_IV};
 
 pub mod config;
 pub mod golden;
+pub mod oracle;
 pub mod random;
 
 /// The arm under test.

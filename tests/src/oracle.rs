@@ -131,7 +131,11 @@ impl Basis {
         let volume = |columns: &Vec<usize>| {
             let (_, determinant) = jacobian.selected(columns).inverse_and_determinant();
             // Elimination of an exactly singular choice divides 0 by 0.
-            if determinant.is_nan() { 0.0 } else { determinant.abs() }
+            if determinant.is_nan() {
+                0.0
+            } else {
+                determinant.abs()
+            }
         };
         let best = choices(n, m)
             .into_iter()
@@ -148,8 +152,7 @@ impl Basis {
         let inverse = jacobian.selected(chosen).inverse();
         // X = J_w^-1 J_m, dX/dt = J_w^-1 (dJ_m/dt - dJ_w/dt X).
         let x = &inverse * jacobian.selected(&rest);
-        let x_dot = inverse
-            * (jacobian_dot.selected(&rest) - jacobian_dot.selected(chosen) * &x);
+        let x_dot = inverse * (jacobian_dot.selected(&rest) - jacobian_dot.selected(chosen) * &x);
         let placed = |block: &Matrix, unit: f64| {
             Matrix::from_fn(rest.len(), n, |i, j| {
                 match chosen.iter().position(|&column| column == j) {
@@ -307,8 +310,7 @@ impl Terms {
         let half = z_dot * &self.mass * &z.t();
         let inertia_rate = &half + half.t() + z * &mass_rate * &z.t();
         let jbar = &inverse * (z * &self.mass);
-        let jbar_dot =
-            inverse * (z_dot * &self.mass + z * &mass_rate - inertia_rate * &jbar);
+        let jbar_dot = inverse * (z_dot * &self.mass + z * &mass_rate - inertia_rate * &jbar);
         (jbar, jbar_dot)
     }
 

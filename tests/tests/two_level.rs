@@ -7,6 +7,7 @@ use hil_sim::names::NullStiffness;
 use hil_sim::plant::PlantKind;
 use hil_sim::scenario::Scenario;
 use hil_sim::summary::{Summary, Verdict};
+use hil_sim::trace::Trace;
 
 fn run(
     plant: PlantKind,
@@ -23,9 +24,11 @@ fn run(
         seed,
     };
     let controller = experiment.controller().expect("a valid configuration");
-    experiment
-        .run(&controller, Vec::new(), |_| ())
-        .expect("writing to memory")
+    let mut trace = Trace::new(Vec::new(), &experiment.scenario).expect("writing to memory");
+    let summary = experiment
+        .run(&controller, |instant| trace.push(instant), |_| ())
+        .expect("writing to memory");
+    (summary, trace.finish())
 }
 
 fn rms(summary: &Summary) -> f64 {

@@ -15,6 +15,7 @@ use crate::output::{self, Draft};
 use crate::plant::PlantKind;
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::{Summary, Verdict};
+use crate::trace::Trace;
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -137,17 +138,22 @@ fn execute(experiment: &Experiment, out: &Path) -> Result<Summary, Invalid> {
     let trace = Draft::create(out, "trace.csv")?;
     let mut file = Draft::create(out, "summary.json")?;
 
+    let failed = |error: io::Error| Invalid::line(error).within(out.display());
     let mut progress = Progress::new(experiment.controller.name());
-    let written = experiment.run(&controller, trace, |share| progress.show(share));
+    let mut trace = Trace::new(trace, &experiment.scenario).map_err(failed)?;
+    let written = experiment.run(
+        &controller,
+        |instant| trace.push(instant),
+        |share| progress.show(share),
+    );
     progress.clear();
 
     warn_of_damping(experiment, &controller);
 
-    let failed = |error: io::Error| Invalid::line(error).within(out.display());
-    let (summary, trace) = written.map_err(failed)?;
+    let summary = written.map_err(failed)?;
     let json = serde_json::to_string_pretty(&summary).map_err(Invalid::line)?;
     writeln!(file, "{json}").map_err(failed)?;
-    trace.commit().map_err(failed)?;
+    trace.finish().commit().map_err(failed)?;
     file.commit().map_err(failed)?;
     Ok(summary)
 }

@@ -236,7 +236,9 @@ mod tests {
 
     #[test]
     fn an_inverse_undoes_a_matrix_and_its_determinant_has_the_sign_of_the_rows() {
-        let a = Matrix::from_fn(3, 3, |i, j| [[0.0, 2.0, 1.0], [1.0, 0.0, 0.0], [3.0, 1.0, 4.0]][i][j]);
+        let a = Matrix::from_fn(3, 3, |i, j| {
+            [[0.0, 2.0, 1.0], [1.0, 0.0, 0.0], [3.0, 1.0, 4.0]][i][j]
+        });
         let (inverse, determinant) = a.inverse_and_determinant();
         // Expanded by hand along the second row: -1 (2 * 4 - 1 * 1).
         assert!((determinant + 7.0).abs() < 1e-14);

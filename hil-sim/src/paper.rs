@@ -1,0 +1,2 @@
+//! The paper in one command.
+pub mod stability;

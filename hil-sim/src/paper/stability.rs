@@ -1,0 +1,282 @@
+//! Stability as the paper argues it: Lyapunov functions along runs of the ideal
+//! arm that start off their references.
+//!
+//! The loop is sampled and the arm is not: a function that decreases in
+//! continuous time may rise by a sampling term in a cycle. Every run is made at
+//! three cycle times; the rises must shrink with the cycle.
+//!
+//! - V_i (43), one per level, gains diagonal, x~ and dx~ the errors of the level:
+//!   x~^T (K_d / K_p + K_p / K_d + 1 / K_d) x~ / 2 + x~^T K_p^-1 dx~
+//!   + dx~^T (1 + 1 / K_p) / K_d dx~ / 2, whose derivative along
+//!   ddx~ + K_d dx~ + K_p x~ = 0 is -x~^T x~ - dx~^T dx~.
+//! - V_1 (41): the same of the first level plus c r~^T K_I^-1 r~ / 2 with r~ = r +
+//!   tau_ext, for a constant tau_ext. c is chosen large enough for the cross terms.
+//! - V_l (46): n^T M n / 2 + q~*^T K_q q~* / 2 with n the null-space velocity and
+//!   q~* the distance from the integrated posture (51), coupled form; its
+//!   derivative is -n^T D n.
+
+use controller_core::config::ControllerConfig;
+use controller_core::controller::{Controller, ControllerState};
+use controller_core::dynamics::Dynamics;
+use controller_core::hierarchy::Hierarchy;
+use controller_core::joint::{JointState, JointVector, Vector3};
+use controller_core::kinematics::Kinematics;
+use controller_core::law::{Posture, TaskMotion, TorqueDemand};
+use controller_core::measurement::{Measurement, Reference};
+use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::task::TaskRows;
+
+use crate::invalid::Invalid;
+use crate::plant::{Plant, PlantKind};
+use crate::scenario::Scenario;
+
+/// Cycle times of the runs \[ms\].
+pub const CYCLES_MS: [f64; 3] = [2.0, 1.0, 0.5];
+
+/// Length of a run \[s\]: 40 time constants of the task error.
+const DURATION_S: f64 = 2.0;
+
+/// How far the tasks start from their references \[m\].
+const TASK_OFFSET_M: f64 = 5e-3;
+
+/// How far every joint starts from the null space's posture \[rad\].
+const POSTURE_OFFSET_RAD: f64 = 0.1;
+
+/// Constant external joint torque \[Nm\] for V_1.
+const EXTERNAL_TORQUE: [f64; 7] = [5.0, -6.0, 4.0, 3.0, -0.5, 0.4, 0.0];
+
+/// c of V_1: above (|K_p^-1 J M^-1|^2 + |(1 + 1/K_p) / K_d J M^-1|^2) / 4 for the
+/// arm's first level, where |J M^-1| stays below 60.
+const RESIDUAL_WEIGHT: f64 = 2.0;
+
+/// Below this share of its start value a rise is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// One Lyapunov function along one run.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// "V1", "V2", .., "Vl".
+    pub name: String,
+    /// Cycle time \[ms\].
+    pub cycle_ms: f64,
+    /// Times \[s\].
+    pub t: Vec<f64>,
+    /// Values, relative to the first.
+    pub value: Vec<f64>,
+    /// Cycles in which it rises beyond rounding.
+    pub rises: usize,
+    /// Largest rise in a cycle, relative to the first value.
+    pub largest_rise: f64,
+}
+
+/// Which function a run is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    WithResidual,
+    Tasks,
+    NullSpace,
+}
+
+/// All functions at all cycle times, on the first case's arm and levels.
+///
+/// # Errors
+/// None for the built-in scenario.
+pub fn evidence() -> Result<Vec<Evidence>, Invalid> {
+    let mut all = Vec::new();
+    for kind in [Kind::WithResidual, Kind::Tasks, Kind::NullSpace] {
+        for cycle_ms in CYCLES_MS {
+            all.append(&mut run(kind, cycle_ms)?);
+        }
+    }
+    Ok(all)
+}
+
+fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
+    let scenario = Scenario {
+        cycle_ms,
+        ..Scenario::find("case-1")?
+    };
+    let mut config = scenario.controller_config(0);
+    if kind == Kind::NullSpace {
+        config.null_space.posture = Posture::IntegralCoupled;
+    }
+    let model = ArmModel::new(&LWR_IV).map_err(Invalid::line)?;
+    let controller = Controller::new(&model, &config).map_err(Invalid::line)?;
+    let cycle_s = scenario.cycle_s();
+    let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, scenario.start(), cycle_s, 1);
+    let mut state = ControllerState::new();
+    let external = if kind == Kind::WithResidual {
+        JointVector::from(EXTERNAL_TORQUE)
+    } else {
+        JointVector::zeros()
+    };
+
+    let mut reference = Reference::new();
+    for mut origin in scenario.origins() {
+        if kind != Kind::NullSpace {
+            origin.x += Vector3::from([TASK_OFFSET_M, -TASK_OFFSET_M, TASK_OFFSET_M]);
+        }
+        // No more levels than the controller has: there is room.
+        let _ = reference.tasks.push(origin);
+    }
+    reference.posture = scenario.start();
+    if kind == Kind::NullSpace {
+        reference.posture += JointVector::repeat(POSTURE_OFFSET_RAD);
+    }
+
+    let mut values: Vec<Vec<f64>> = Vec::new();
+    let mut times = Vec::new();
+    let mut posture = PostureIntegral::new(reference.posture);
+    for cycle in 0..(DURATION_S / cycle_s) as usize {
+        let t_s = cycle as f64 * cycle_s;
+        let truth = *plant.state();
+        let measurement = Measurement {
+            q: truth.q,
+            dq: truth.dq,
+            interval_s: cycle_s,
+        };
+        let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
+            // Without external torque the residual is sampling error only; the
+            // paper's V_i and V_l are for r~ = 0.
+            let residual = if kind == Kind::WithResidual {
+                *cycle.residual
+            } else {
+                JointVector::zeros()
+            };
+            TorqueDemand::compensating(cycle, &residual)
+        });
+        let shown = functions(
+            kind,
+            &config,
+            &model,
+            &truth,
+            &reference,
+            &(step.residual - external),
+            |w| posture.at(w, cycle_s),
+        );
+        times.push(t_s);
+        values.resize(shown.len(), Vec::new());
+        for (series, value) in values.iter_mut().zip(shown) {
+            series.push(value);
+        }
+        plant.advance(t_s, &step.torque, |_, _, _| external);
+    }
+    let named = |(index, series): (usize, Vec<f64>)| {
+        let name = match kind {
+            Kind::WithResidual => "V1".to_string(),
+            Kind::Tasks => format!("V{} contact-free", index + 1),
+            Kind::NullSpace => "Vl".to_string(),
+        };
+        summarise(name, cycle_ms, &times, series)
+    };
+    Ok(values.into_iter().enumerate().map(named).collect())
+}
+
+/// The integral (51) as the controller forms it: trapezoidal rule.
+struct PostureIntegral {
+    q_d: JointVector<f64>,
+    rate: Option<JointVector<f64>>,
+}
+
+impl PostureIntegral {
+    fn new(q_d: JointVector<f64>) -> Self {
+        Self { q_d, rate: None }
+    }
+
+    fn at(&mut self, rate: &JointVector<f64>, cycle_s: f64) -> JointVector<f64> {
+        if let Some(last) = self.rate {
+            self.q_d += (rate + last) * (0.5 * cycle_s);
+        }
+        self.rate = Some(*rate);
+        self.q_d
+    }
+}
+
+/// The values of the functions of this kind at a true state.
+fn functions(
+    kind: Kind,
+    config: &ControllerConfig<f64>,
+    model: &ArmModel<f64>,
+    state: &JointState<f64>,
+    reference: &Reference<f64>,
+    residual_error: &JointVector<f64>,
+    posture: impl FnOnce(&JointVector<f64>) -> JointVector<f64>,
+) -> Vec<f64> {
+    let kinematics = Kinematics::new(model, state);
+    let dynamics = Dynamics::new(model, &kinematics, state);
+    let rows = TaskRows::new(&config.tasks, &reference.tasks, &kinematics, state);
+    let hierarchy = Hierarchy::new(&rows, &dynamics.cholesky);
+    let motion = TaskMotion::new(&dynamics, &hierarchy, state);
+    let q_d = posture(&motion.task_velocity);
+    let levels = config.tasks.iter().enumerate().map(|(level, task)| {
+        let (kp, kd) = (task.stiffness.m11, task.damping.m11);
+        hierarchy
+            .level_range(level)
+            .map(|row| {
+                let (x, dx) = (rows.error[row], -rows.jacobian[row].dot(&state.dq));
+                0.5 * (kd / kp + (kp + 1.0) / kd) * x * x
+                    + x * dx / kp
+                    + 0.5 * (1.0 + 1.0 / kp) / kd * dx * dx
+            })
+            .sum::<f64>()
+    });
+    match kind {
+        Kind::Tasks => levels.collect(),
+        Kind::WithResidual => {
+            let weighted: f64 = residual_error
+                .iter()
+                .zip(&config.observer_gain)
+                .map(|(r, gain)| RESIDUAL_WEIGHT * r * r / gain)
+                .sum();
+            levels.take(1).map(|first| first + 0.5 * weighted).collect()
+        }
+        Kind::NullSpace => {
+            let n = motion.null_velocity;
+            let offset = q_d - state.q;
+            let stiffness = config.null_space.stiffness;
+            vec![0.5 * (n.dot(&(dynamics.mass_matrix * n)) + offset.dot(&(stiffness * offset)))]
+        }
+    }
+}
+
+fn summarise(name: String, cycle_ms: f64, t: &[f64], mut value: Vec<f64>) -> Evidence {
+    let first = value.first().copied().unwrap_or(1.0);
+    value.iter_mut().for_each(|v| *v /= first);
+    let rises = value
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|rise| *rise > ROUNDING);
+    let (count, largest) = rises.fold((0, 0.0f64), |(n, max), rise| (n + 1, max.max(rise)));
+    Evidence {
+        name,
+        cycle_ms,
+        t: t.to_vec(),
+        value,
+        rises: count,
+        largest_rise: largest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// V_1 and V_i never rise; V_l rises by a sampling term that at least halves
+    /// twice with the cycle.
+    #[test]
+    fn the_functions_decrease_up_to_a_sampling_term() {
+        let all = evidence().expect("built-in scenario");
+        assert_eq!(all.len(), 12);
+        for e in &all {
+            if e.name != "Vl" {
+                assert_eq!(e.rises, 0, "{} at {} ms", e.name, e.cycle_ms);
+                assert!(e.value.last().expect("cycles") < &1e-12);
+            }
+        }
+        let null: Vec<_> = all.iter().filter(|e| e.name == "Vl").collect();
+        assert!(null[0].largest_rise < 1e-7);
+        for pair in null.windows(2) {
+            assert!(pair[1].largest_rise < 0.25 * pair[0].largest_rise);
+        }
+    }
+}
