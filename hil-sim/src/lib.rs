@@ -16,6 +16,7 @@ pub mod metrics;
 pub mod names;
 pub mod output;
 pub mod plant;
+pub mod report;
 pub mod scenario;
 pub mod summary;
 pub mod trace;
