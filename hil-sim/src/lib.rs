@@ -17,6 +17,7 @@ pub mod names;
 pub mod output;
 pub mod paper;
 pub mod plant;
+pub mod report;
 pub mod scenario;
 pub mod summary;
 pub mod trace;

@@ -1,0 +1,309 @@
+//! The report of a run: one HTML file that needs nothing else.
+
+use std::fmt::Write;
+
+use super::svg::escape;
+use super::ticks::plain;
+use super::{Run, diagram, figures, palette, tables};
+use crate::scenario::Scenario;
+use crate::summary::{Summary, Verdict};
+
+const PAGE_CSS: &str = include_str!("page.css");
+
+/// The report as text of one HTML file, with style and drawings inside.
+#[must_use]
+pub fn run_report(run: &Run<'_>) -> String {
+    let title = format!("{} \u{2013} {}", run.label(), run.summary.verdict.name());
+    let mut body = header(run);
+    body += &banner(run.summary);
+    section(&mut body, "Acceptance", &tables::acceptance(run));
+    section(&mut body, "Task levels", &tables::levels(run));
+    section(&mut body, "Contacts", &tables::contacts(run));
+    section(&mut body, "Figures", &drawings(run));
+    section(&mut body, "Joints, observer, limits", &tables::joints(run));
+    section(&mut body, "Settings", &tables::settings(run));
+    body += &footer(run);
+    page(&title, &body)
+}
+
+/// A whole page around `body`, with the style of pages and drawings. `body` is
+/// HTML already.
+#[must_use]
+pub fn page(title: &str, body: &str) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n\
+         <style>\n{}{PAGE_CSS}</style>\n</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n",
+        escape(title),
+        palette::drawing_css(),
+    )
+}
+
+/// A section with its heading. `content` is HTML already.
+pub fn section(body: &mut String, heading: &str, content: &str) {
+    let _ = write!(
+        body,
+        "<section>\n<h2>{}</h2>\n{content}</section>\n",
+        escape(heading)
+    );
+}
+
+/// A numbered figure; `caption` is plain text.
+#[must_use]
+pub fn figure(number: usize, drawing: &str, caption: &str) -> String {
+    format!(
+        "<figure id=\"fig-{number}\">\n<div class=\"scroll\">{drawing}</div>\n\
+         <figcaption><b>Fig. {number}</b> {}</figcaption>\n</figure>\n",
+        escape(caption)
+    )
+}
+
+fn header(run: &Run<'_>) -> String {
+    let Summary {
+        scenario,
+        controller,
+        plant,
+        seed,
+        contacts,
+        duration_s,
+        cycle_ms,
+        ..
+    } = run.summary;
+    let contacts = if *contacts { "on" } else { "off" };
+    let facts = [
+        ("Controller", (*controller).to_string()),
+        ("Plant", (*plant).to_string()),
+        ("Contacts", contacts.to_string()),
+        ("Seed", seed.to_string()),
+        ("Duration", format!("{} s", plain(*duration_s))),
+        ("Cycle", format!("{} ms", plain(*cycle_ms))),
+    ];
+    let mut html = format!(
+        "<header>\n<p class=\"kind\">Run report</p>\n<h1>{}</h1>\n<dl class=\"facts\">\n",
+        escape(scenario)
+    );
+    for (name, value) in facts {
+        let _ = writeln!(
+            html,
+            "<div><dt>{name}</dt><dd>{}</dd></div>",
+            escape(&value)
+        );
+    }
+    html + "</dl>\n</header>\n"
+}
+
+/// The verdict as icon, word and colour, with its reason. `summary` decides.
+fn banner(summary: &Summary) -> String {
+    let judged: Vec<_> = summary
+        .acceptance
+        .iter()
+        .filter_map(|one| one.pass)
+        .collect();
+    let kept = judged.iter().filter(|&&pass| pass).count();
+    let reason = summary
+        .reason
+        .clone()
+        .unwrap_or_else(|| match judged.len() {
+            0 => "No limit was judged.".to_string(),
+            1 => "The one limit is kept.".to_string(),
+            all => format!("All {all} limits are kept."),
+        });
+    let (word, icon, more) = match summary.verdict {
+        Verdict::Pass => (
+            "PASS",
+            r#"<circle cx="20" cy="20" r="17"/><path d="M12 21l6 6 11-13"/>"#,
+            String::new(),
+        ),
+        Verdict::Fail => (
+            "FAIL",
+            r#"<circle cx="20" cy="20" r="17"/><path d="M13.500 13.500l13 13m0-13l-13 13"/>"#,
+            format!("{kept} of {} limits kept.", judged.len()),
+        ),
+        Verdict::Stopped => (
+            "STOPPED",
+            r#"<path d="M13 3.500h14l9.500 9.500v14l-9.500 9.500h-14l-9.500-9.500v-14z"/><path d="M20 11v11m0 6v.5"/>"#,
+            format!("Safety stopped the run after {} cycles.", summary.cycles),
+        ),
+    };
+    let mut html = format!(
+        "<section class=\"verdict {}\" aria-label=\"Verdict\">\n\
+         <svg class=\"icon\" viewBox=\"0 0 40 40\" aria-hidden=\"true\">{icon}</svg>\n\
+         <div><p class=\"word\">{word}</p>\n",
+        summary.verdict.name()
+    );
+    // The reason of a failure is a list of limits, that of a stop one sentence.
+    let reasons: Vec<_> = match summary.verdict {
+        Verdict::Fail => reason.split("; ").collect(),
+        Verdict::Pass | Verdict::Stopped => vec![reason.as_str()],
+    };
+    for part in reasons
+        .into_iter()
+        .chain([more.as_str()])
+        .filter(|part| !part.is_empty())
+    {
+        let _ = writeln!(html, "<p>{}</p>", escape(part));
+    }
+    html + "</div>\n</section>\n"
+}
+
+fn drawings(run: &Run<'_>) -> String {
+    let mut html = String::new();
+    let mut number = 0;
+    for one in figures::captioned(run) {
+        number += 1;
+        html += &figure(number, &one.drawing.inline(), &one.caption);
+    }
+    if run.summary.controller == "hierarchical" {
+        html += &figure(
+            number + 1,
+            &diagram::drawing().inline(),
+            "The controller of this run: references by priority, compliance in what the tasks \
+             leave free, external torque estimated from momentum and compensated on the tasks.",
+        );
+    }
+    html
+}
+
+fn footer(run: &Run<'_>) -> String {
+    let command = run.command.map_or_else(|| command(run), str::to_string);
+    format!(
+        "<footer>\n<p>This run again:</p>\n<pre><code>{}</code></pre>\n\
+         <p>Stratum {}. The same command gives the same numbers on every machine; all of them are \
+         in <code>summary.json</code> and <code>trace.csv</code> beside this file.</p>\n</footer>\n",
+        escape(&command),
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// The command line that repeats the run: every choice named, and of the
+/// scenario's own numbers those that it does not have by itself.
+fn command(run: &Run<'_>) -> String {
+    let summary = run.summary;
+    let mut line = format!(
+        "hil-sim run {} --plant {} --contacts {} --controller {} --seed {}",
+        summary.scenario,
+        summary.plant,
+        if summary.contacts { "on" } else { "off" },
+        summary.controller,
+        summary.seed
+    );
+    let stiffness = crate::names::Named::name(run.null_stiffness);
+    if stiffness != "normal" {
+        let _ = write!(line, " --null-stiffness {stiffness}");
+    }
+    let own = Scenario::find(&summary.scenario).ok();
+    if own
+        .as_ref()
+        .is_none_or(|own| own.duration_s != summary.duration_s)
+    {
+        let _ = write!(line, " --duration {}", summary.duration_s);
+    }
+    if own
+        .as_ref()
+        .is_none_or(|own| own.cycle_ms != summary.cycle_ms)
+    {
+        let _ = write!(line, " --cycle-ms {}", summary.cycle_ms);
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::{ArmSnapshot, Cycle, LevelCycle, Recording};
+    use super::super::svg::well_formed;
+    use super::*;
+    use crate::controllers::ControllerKind;
+    use crate::experiment::Experiment;
+    use crate::names::NullStiffness;
+    use crate::plant::PlantKind;
+    use controller_core::joint::JointVector;
+
+    /// A short real summary, and a recording with what `value` gives.
+    fn run(value: f64) -> (Summary, Scenario, Recording) {
+        let mut scenario = Scenario::find("two-level").unwrap();
+        scenario.duration_s = 0.2;
+        let experiment = Experiment {
+            scenario: scenario.clone(),
+            plant: PlantKind::Realistic,
+            contacts: true,
+            controller: ControllerKind::Hierarchical,
+            null_stiffness: NullStiffness::Normal,
+            seed: 1,
+        };
+        let controller = experiment.controller().unwrap();
+        let (summary, _) = experiment.run(&controller, Vec::new(), |_| ()).unwrap();
+        let mut recording = Recording::new(&scenario, true);
+        let joints = JointVector::repeat(value);
+        for k in 0..100 {
+            recording.push(&Cycle {
+                t_s: f64::from(k) * 2e-3,
+                q: &joints,
+                residual: &joints,
+                tau_ext: &joints,
+                conditioning: &[value; 7],
+                levels: &[LevelCycle {
+                    error_m: value,
+                    leak: value,
+                    desired: [value; 3],
+                    actual: [value; 3],
+                }],
+                hand_force_n: Some(value),
+            });
+        }
+        recording.arms.push(ArmSnapshot {
+            t_s: 0.0,
+            joints: [[value; 3]; 4],
+        });
+        recording.finish();
+        (summary, scenario, recording)
+    }
+
+    #[test]
+    fn reports_are_well_formed_whatever_was_recorded() {
+        for value in [0.0, 1.0, -1e9, f64::NAN, f64::INFINITY] {
+            let (summary, scenario, recording) = run(value);
+            let run = Run::new(&summary, &scenario, &recording);
+            let html = run_report(&run);
+            well_formed(&html).unwrap_or_else(|error| panic!("{value}: {error}"));
+            assert!(!html.contains("NaN"), "{value}");
+            for (name, svg) in figures::figures(&run) {
+                well_formed(&svg).unwrap_or_else(|error| panic!("{name}: {error}"));
+                assert!(svg.len() < 300_000 && !svg.contains("NaN"), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_recording_is_a_report() {
+        let (mut summary, scenario, _) = run(1.0);
+        let recording = Recording::new(&scenario, true);
+        summary.verdict = Verdict::Stopped;
+        summary.reason = Some("joint 1 is not finite".into());
+        well_formed(&run_report(&Run::new(&summary, &scenario, &recording))).unwrap();
+    }
+
+    #[test]
+    fn names_are_escaped_and_the_verdict_is_a_word() {
+        let (mut summary, scenario, recording) = run(1.0);
+        summary.scenario = "<b>&\"".into();
+        summary.verdict = Verdict::Fail;
+        summary.reason = Some("a = 3 < 4; b".into());
+        let html = run_report(&Run::new(&summary, &scenario, &recording));
+        well_formed(&html).unwrap();
+        assert!(html.contains("&lt;b&gt;&amp;&quot;") && !html.contains("<b>&\""));
+        assert!(html.contains(">FAIL<") && html.contains("a = 3 &lt; 4"));
+    }
+
+    #[test]
+    fn the_command_names_what_differs() {
+        let (summary, scenario, recording) = run(1.0);
+        let mut run = Run::new(&summary, &scenario, &recording);
+        run.null_stiffness = NullStiffness::High;
+        assert_eq!(
+            command(&run),
+            "hil-sim run two-level --plant realistic --contacts on --controller hierarchical \
+             --seed 1 --null-stiffness high --duration 0.2"
+        );
+    }
+}

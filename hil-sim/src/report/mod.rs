@@ -1,0 +1,141 @@
+//! Reports: what a run was, whether it passed, and the figures that show why.
+//!
+//! Bottom-up: [`recording`] keeps the time series of a run; [`svg`] writes
+//! drawings; [`ticks`] finds round numbers for axes; [`plot`] draws line charts
+//! of stacked panels; [`scene`] draws paths and arm postures; [`diagram`] the
+//! controller as blocks; [`figures`](mod@figures) are those of a run, and
+//! [`html`] binds them with the verdict and the tables into one file.
+//!
+//! Everything is text built in memory: deterministic, self-contained, no
+//! scripts and nothing fetched from a network.
+
+pub mod diagram;
+pub mod figures;
+pub mod html;
+pub mod palette;
+pub mod plot;
+pub mod recording;
+pub mod scene;
+pub mod svg;
+mod tables;
+pub mod ticks;
+
+pub use diagram::block_diagram;
+pub use figures::figures;
+pub use html::run_report;
+pub use recording::Recording;
+pub use scene::snapshots;
+
+use crate::contact::Contact;
+use crate::names::NullStiffness;
+use crate::scenario::Scenario;
+use crate::summary::{Summary, Verdict};
+
+/// A finished run, as the figures and the report need it.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// What it reached.
+    pub summary: &'a Summary,
+    /// What it was.
+    pub scenario: &'a Scenario,
+    /// Its time series.
+    pub recording: &'a Recording,
+    /// Factor on the scenario's null-space stiffness.
+    pub null_stiffness: NullStiffness,
+    /// The command that repeats it; none: put together from the summary.
+    pub command: Option<&'a str>,
+}
+
+impl<'a> Run<'a> {
+    /// A run with the scenario's own null-space stiffness.
+    #[must_use]
+    pub fn new(summary: &'a Summary, scenario: &'a Scenario, recording: &'a Recording) -> Self {
+        Self {
+            summary,
+            scenario,
+            recording,
+            null_stiffness: NullStiffness::Normal,
+            command: None,
+        }
+    }
+
+    /// The scripted contacts that acted.
+    #[must_use]
+    pub fn contacts(&self) -> &'a [Contact] {
+        if self.summary.contacts {
+            &self.scenario.contacts
+        } else {
+            &[]
+        }
+    }
+
+    /// Whether the run came as far as `t_s`; only a stopped one may not have.
+    #[must_use]
+    pub fn reached(&self, t_s: f64) -> bool {
+        self.summary.verdict != Verdict::Stopped
+            || self.recording.t().last().is_some_and(|&end| t_s <= end)
+    }
+
+    /// When someone or something touched the arm: the scripted contacts, then
+    /// the hand's intervals, lettered in this order, as far as the run came.
+    #[must_use]
+    pub fn bands(&self) -> Vec<plot::Band> {
+        let scripted = self.contacts().iter().map(|c| [c.from_s, c.to_s]);
+        let hand = self.recording.hand_intervals_s.iter().copied();
+        let intervals = scripted.chain(hand).enumerate();
+        intervals
+            .filter(|(_, [from, _])| self.reached(*from))
+            .map(|(index, [from, to])| plot::Band {
+                from,
+                to,
+                label: letter(index),
+            })
+            .collect()
+    }
+
+    /// "two-level, hierarchical, realistic plant, seed 1".
+    #[must_use]
+    pub fn label(&self) -> String {
+        let Summary {
+            scenario,
+            controller,
+            plant,
+            seed,
+            ..
+        } = self.summary;
+        format!("{scenario}, {controller}, {plant} plant, seed {seed}")
+    }
+}
+
+/// Letters that number contacts: A to Z, then AA, AB and so on.
+#[must_use]
+pub fn letter(index: usize) -> String {
+    let mut letters = Vec::new();
+    let mut rest = index + 1;
+    while rest > 0 {
+        rest -= 1;
+        letters.push(char::from(b'A' + (rest % 26) as u8));
+        rest /= 26;
+    }
+    letters.iter().rev().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::letter;
+
+    #[test]
+    fn letters_go_on_after_z() {
+        let known = [
+            (0, "A"),
+            (25, "Z"),
+            (26, "AA"),
+            (51, "AZ"),
+            (52, "BA"),
+            (702, "AAA"),
+        ];
+        for (index, name) in known {
+            assert_eq!(letter(index), name);
+        }
+    }
+}

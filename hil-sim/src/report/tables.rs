@@ -1,0 +1,347 @@
+//! The tables of a report.
+
+use std::fmt::Write;
+
+use super::svg::escape;
+use super::ticks::{figure, plain};
+use super::{Run, letter};
+use crate::metrics::{LevelFigures, Metric};
+use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+
+/// A table under construction: rows of cells that are HTML already.
+struct Table {
+    html: String,
+}
+
+impl Table {
+    /// `columns` are titles; those that begin with `#` hold numbers.
+    fn new(caption: &str, columns: &[String]) -> Self {
+        let mut html = format!(
+            "<div class=\"scroll\"><table>\n<caption>{}</caption>\n<thead><tr>",
+            escape(caption)
+        );
+        for column in columns {
+            let (class, title) = match column.strip_prefix('#') {
+                Some(title) => (" class=\"n\"", title),
+                None => ("", column.as_str()),
+            };
+            let _ = write!(html, "<th scope=\"col\"{class}>{}</th>", escape(title));
+        }
+        html += "</tr></thead>\n<tbody>\n";
+        Self { html }
+    }
+
+    /// A row: its heading, then cells; a cell that begins with `#` is a number.
+    fn row(&mut self, heading: &str, cells: &[String]) {
+        let _ = write!(self.html, "<tr><th scope=\"row\">{heading}</th>");
+        for cell in cells {
+            let _ = match cell.strip_prefix('#') {
+                Some(number) => write!(self.html, "<td class=\"n\">{number}</td>"),
+                None => write!(self.html, "<td>{cell}</td>"),
+            };
+        }
+        self.html += "</tr>\n";
+    }
+
+    fn finish(self) -> String {
+        self.html + "</tbody></table></div>\n"
+    }
+}
+
+fn columns(names: &[&str]) -> Vec<String> {
+    names.iter().map(ToString::to_string).collect()
+}
+
+fn number(value: Option<f64>) -> String {
+    format!("#{}", value.map_or("\u{2013}".to_string(), figure))
+}
+
+/// Limits, what was reached, and whether that is good enough.
+pub fn acceptance(run: &Run<'_>) -> String {
+    let all = &run.summary.acceptance;
+    if all.is_empty() {
+        return "<p>The scenario sets no limits for this plant and these contacts: nothing was \
+                judged.</p>\n"
+            .to_string();
+    }
+    let mut table = Table::new(
+        "Every metric must be below its limit.",
+        &columns(&["Metric", "#Limit [mm]", "#Value [mm]", "#Used", "Result"]),
+    );
+    for one in all {
+        let used = one
+            .value
+            .map(|value| format!("#{:.0}\u{a0}%", 100.0 * value / one.limit));
+        let result = match one.pass {
+            Some(true) => "<span class=\"pass\">\u{2713} pass</span>",
+            Some(false) => "<span class=\"fail\">\u{2717} fail</span>",
+            None => "<span class=\"none\">\u{2013} not judged: no samples</span>",
+        };
+        let name = format!(
+            "{} <code>{}</code>",
+            escape(&metric_name(&one.metric, &run.summary.levels)),
+            escape(&one.metric)
+        );
+        table.row(
+            &name,
+            &[
+                format!("#&lt;\u{a0}{}", plain(one.limit)),
+                number(one.value),
+                used.unwrap_or_else(|| number(None)),
+                result.to_string(),
+            ],
+        );
+    }
+    table.finish()
+}
+
+/// "rms error of level 1, flange xyz".
+fn metric_name(name: &str, levels: &[LevelFigures]) -> String {
+    let Ok(metric) = Metric::parse(name, levels.len()) else {
+        return String::new();
+    };
+    let (what, level) = match metric {
+        Metric::Rms(level) => ("rms error", level),
+        Metric::Max(level) => ("largest error", level),
+        Metric::Plateau(level) => ("worst plateau", level),
+    };
+    format!("{what} of level {}, {}", level + 1, levels[level].name)
+}
+
+/// Tracking figures per level.
+pub fn levels(run: &Run<'_>) -> String {
+    let mut table = Table::new(
+        "Task error of every level in mm. Inside: during contacts and 0.3 s after them.",
+        &columns(&[
+            "Level",
+            "#rms",
+            "#Largest",
+            "#rms inside",
+            "#rms outside",
+            "#Worst plateau",
+        ]),
+    );
+    for (index, level) in run.summary.levels.iter().enumerate() {
+        let worst = level
+            .plateau_mm
+            .iter()
+            .enumerate()
+            .filter_map(|(k, v)| Some((k, (*v)?)));
+        let worst = worst.max_by(|a, b| a.1.total_cmp(&b.1));
+        table.row(
+            &format!("{} {}", index + 1, escape(&level.name)),
+            &[
+                number(level.rms_mm),
+                number(level.max_mm),
+                number(level.rms_inside_mm),
+                number(level.rms_outside_mm),
+                worst.map_or_else(
+                    || number(None),
+                    |(k, value)| format!("#{} ({})", figure(value), letter(k)),
+                ),
+            ],
+        );
+    }
+    table.finish()
+}
+
+/// Who pushed where, when, how hard, and how far each level gave way.
+pub fn contacts(run: &Run<'_>) -> String {
+    let scripted = run.contacts();
+    let hand = &run.recording.hand_intervals_s;
+    if scripted.is_empty() && hand.is_empty() {
+        return "<p>No contacts in this run.</p>\n".to_string();
+    }
+    let mut names = columns(&[
+        "Contact",
+        "Point",
+        "Interval [s]",
+        "#Force x, y, z [N]",
+        "#|F| [N]",
+    ]);
+    for level in 1..=run.summary.levels.len() {
+        names.push(format!("#Plateau level {level} [mm]"));
+    }
+    let mut table = Table::new(
+        "Contacts, lettered as in the figures. Plateau: mean error over the last 0.2 s before the \
+         force ramps down.",
+        &names,
+    );
+    for (index, contact) in scripted.iter().enumerate() {
+        let force = contact.force_n.map(plain).join(", ");
+        let size = contact.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let mut cells = vec![
+            escape(&contact.point.label()),
+            if run.reached(contact.from_s) {
+                interval(contact.from_s, contact.to_s)
+            } else {
+                format!("{}, not reached", interval(contact.from_s, contact.to_s))
+            },
+            format!("#{force}"),
+            number(Some(size)),
+        ];
+        let plateaus = run
+            .summary
+            .levels
+            .iter()
+            .map(|level| level.plateau_mm.get(index));
+        cells.extend(plateaus.map(|plateau| number(plateau.copied().flatten())));
+        table.row(&badge(index), &cells);
+    }
+    for (index, [from, to]) in (scripted.len()..).zip(hand) {
+        let largest = run
+            .summary
+            .hand_force_max_n
+            .map_or("\u{2013}".to_string(), figure);
+        let mut cells = vec![
+            "hand".to_string(),
+            interval(*from, *to),
+            "#see figure".to_string(),
+            format!("#\u{2264}\u{a0}{largest}"),
+        ];
+        cells.extend(run.summary.levels.iter().map(|_| number(None)));
+        table.row(&badge(index), &cells);
+    }
+    table.finish()
+}
+
+fn badge(index: usize) -> String {
+    format!("<span class=\"badge\">{}</span>", letter(index))
+}
+
+fn interval(from: f64, to: f64) -> String {
+    format!("{} to {}", plain(from), plain(to))
+}
+
+/// Torque, travel, estimate, limits and faults.
+pub fn joints(run: &Run<'_>) -> String {
+    let summary = run.summary;
+    let mut names = columns(&["Quantity"]);
+    names.extend((1..=7).map(|joint| format!("#Joint {joint}")));
+    let mut table = Table::new("Per joint.", &names);
+    let cells = |values: &[f64; 7]| values.map(|value| number(Some(value)));
+    table.row("Largest |\u{3c4}| [Nm]", &cells(&summary.torque.max_abs_nm));
+    table.row("Travel [deg]", &cells(&summary.joints.range_deg));
+    let mut html = table.finish();
+
+    let cycles = |count: usize| format!("#{count}");
+    let mut table = Table::new(
+        "Observer, limits and faults.",
+        &columns(&["Quantity", "#Value"]),
+    );
+    table.row("rms of r [Nm]", &[number(summary.residual.rms_nm)]);
+    table.row(
+        "rms of r + \u{3c4}_ext, the error of the estimate [Nm]",
+        &[number(summary.residual.rms_error_nm)],
+    );
+    if let Some(force) = summary.hand_force_max_n {
+        table.row("Largest hand force [N]", &[number(Some(force))]);
+    }
+    table.row(
+        "Cycles with a torque at its limit",
+        &[cycles(summary.limits.torque)],
+    );
+    table.row(
+        "Cycles with a task row that cannot be resolved",
+        &[cycles(summary.limits.rank)],
+    );
+    table.row(
+        "Cycles with a joint beyond its range",
+        &[cycles(summary.limits.position)],
+    );
+    table.row(
+        "Faults: implausible input",
+        &[cycles(summary.faults.implausible)],
+    );
+    table.row(
+        "Faults: torque not finite",
+        &[cycles(summary.faults.non_finite_torque)],
+    );
+    html += &table.finish();
+    html
+}
+
+/// Gains, references, cycle: what the run was set to.
+pub fn settings(run: &Run<'_>) -> String {
+    let (scenario, summary) = (run.scenario, run.summary);
+    let mut table = Table::new(
+        "Gains as they acted, with the chosen null-space stiffness.",
+        &columns(&["Setting", "Value"]),
+    );
+    let mut row = |name: &str, value: String| table.row(&escape(name), &[escape(&value)]);
+    row("Arm", scenario.robot.clone());
+    row(
+        "Plant, seed",
+        format!("{}, {}", summary.plant, summary.seed),
+    );
+    row("Controller", summary.controller.to_string());
+    row(
+        "Duration, cycle",
+        format!(
+            "{} s, {} ms, {} cycles run",
+            plain(summary.duration_s),
+            plain(summary.cycle_ms),
+            summary.cycles
+        ),
+    );
+    row("Start posture, also q_d [deg]", list(&scenario.start_deg));
+    for (number, level) in (1..).zip(&scenario.levels) {
+        row(
+            &format!("Level {number}: task"),
+            format!("{}: {}", level.label(), reference(level)),
+        );
+        row(
+            &format!("Level {number}: K_p [1/s\u{b2}], K_d [1/s]"),
+            format!("{}; {}", gain(&level.stiffness), gain(&level.damping)),
+        );
+    }
+    let null = &scenario.null_space;
+    let factor = run.null_stiffness.factor();
+    row(
+        "Null space: K_q [Nm/rad]",
+        list(&null.stiffness.map(|k| factor * k)),
+    );
+    row("Null space: D [Nms/rad]", list(&null.damping));
+    let posture = match null.posture {
+        PostureSpec::Constant => "constant",
+        PostureSpec::IntegralCoupled => "integral, coupled",
+        PostureSpec::IntegralUncoupled => "integral, uncoupled",
+    };
+    row("Null space: posture q_d", posture.to_string());
+    if summary.controller.starts_with("acceleration-level") {
+        row("Null space: rate gain [1/s]", plain(null.rate_gain));
+    }
+    row("Observer: K_I [1/s]", plain(scenario.observer.gain));
+    table.finish()
+}
+
+fn list(values: &[f64]) -> String {
+    // Products of settings and factors carry the last bits of rounding.
+    let short = |v: &f64| plain((v * 1e9).round() / 1e9);
+    values.iter().map(short).collect::<Vec<_>>().join(", ")
+}
+
+fn gain(gain: &AxisGain) -> String {
+    match gain {
+        AxisGain::Uniform(value) => plain(*value),
+        AxisGain::PerAxis(values) => list(values),
+    }
+}
+
+fn reference(level: &LevelSpec) -> String {
+    let (kind, turn) = match &level.reference {
+        ReferenceSpec::Hold => return "held".to_string(),
+        ReferenceSpec::Move { by_m, duration_s } => {
+            return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
+        }
+        ReferenceSpec::Circle(turn) => ("circle", turn),
+        ReferenceSpec::Spiral(turn) => ("spiral", turn),
+    };
+    format!(
+        "{kind} in {}, radius {} m reached in {} s, {} s a turn",
+        format!("{:?}", turn.plane).to_uppercase(),
+        plain(turn.radius_m),
+        plain(turn.growth_s),
+        plain(turn.period_s)
+    )
+}
