@@ -68,6 +68,18 @@ pub fn prepare(folder: &Path) -> Result<(), Invalid> {
     fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))
 }
 
+/// Writes a whole file.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn write(folder: &Path, name: &str, text: &str) -> Result<(), Invalid> {
+    let mut draft = Draft::create(folder, name)?;
+    let written = draft
+        .write_all(text.as_bytes())
+        .and_then(|()| draft.commit());
+    written.map_err(|error| unwritable(folder, &error))
+}
+
 fn unwritable(folder: &Path, error: &io::Error) -> Invalid {
     Invalid::new(
         "output folder",

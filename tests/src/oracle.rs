@@ -221,6 +221,16 @@ impl Oracle {
         }
     }
 
+    /// The condition numbers of J M^-1 J^T and of M, added: what the formulas
+    /// invert, and so what they may lose. Never below 1e4 for the arm.
+    #[must_use]
+    pub fn conditioning(&self) -> f64 {
+        let (jacobian, _) = self.terms.stacked(self.levels.len());
+        let mobility = &jacobian * &self.mass_inverse * &jacobian.t();
+        mobility.amax() * mobility.inverse().amax()
+            + self.terms.mass.amax() * self.mass_inverse.amax()
+    }
+
     /// v = Jbar_l dq.
     #[must_use]
     pub fn null_velocity(&self) -> Matrix {

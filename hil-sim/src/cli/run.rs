@@ -1,7 +1,7 @@
 //! `hil-sim run` and the comparison that runs without arguments.
 
 use std::fmt::Display;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -13,15 +13,16 @@ use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{Named, NullStiffness, Switch};
 use crate::output::{self, Draft};
 use crate::plant::PlantKind;
+use crate::report::{self, Recording};
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
-use crate::summary::{Summary, Verdict};
+use crate::summary::Summary;
 use crate::trace::Trace;
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
 #[derive(Clone, Debug, Args)]
 pub struct RunOptions {
-    /// Built-in scenario (two-level), or a TOML file
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     scenario: String,
     /// ideal, realistic
     #[arg(long, default_value = "realistic")]
@@ -29,7 +30,7 @@ pub struct RunOptions {
     /// on, off
     #[arg(long, default_value = "on")]
     contacts: String,
-    /// hierarchical, no-observer, acceleration-level
+    /// hierarchical, no-observer, literal, as-printed, acceleration-level, acceleration-level-estimate
     #[arg(long, default_value = "hierarchical")]
     controller: String,
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
@@ -63,17 +64,44 @@ impl RunOptions {
     ///
     /// # Errors
     /// Whatever was given that cannot be used.
-    pub fn run(self) -> Result<u8, Invalid> {
+    pub fn run(&self) -> Result<u8, Invalid> {
         let experiment = self.experiment()?;
+        let command = self.command();
         let out = self
             .out
+            .clone()
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
-        let summary = execute(&experiment, &out)?;
+        let summary = execute(&experiment, &out, Some(&command))?;
         let mut text = heading(&experiment);
         text += &table(&[&summary]);
         text += &footer(&summary, &out);
         super::print(&text)?;
         Ok(summary.verdict.exit_code())
+    }
+
+    /// The command line that repeats this run.
+    fn command(&self) -> String {
+        let mut words = vec![
+            "hil-sim".to_string(),
+            "run".to_string(),
+            self.scenario.clone(),
+        ];
+        let mut option = |name: &str, value: &str, default: &str| {
+            if value != default {
+                words.extend([format!("--{name}"), value.to_string()]);
+            }
+        };
+        option("plant", &self.plant, "realistic");
+        option("contacts", &self.contacts, "on");
+        option("controller", &self.controller, "hierarchical");
+        option("null-stiffness", &self.null_stiffness, "normal");
+        option("seed", &self.seed.to_string(), "1");
+        for (name, value) in [("duration", self.duration), ("cycle-ms", self.cycle_ms)] {
+            if let Some(value) = value {
+                option(name, &value.to_string(), "");
+            }
+        }
+        words.join(" ")
     }
 
     fn experiment(&self) -> Result<Experiment, Invalid> {
@@ -111,7 +139,7 @@ pub fn comparison() -> Result<u8, Invalid> {
         null_stiffness: NullStiffness::Normal,
         seed: 1,
     };
-    let summary = execute(&product, &out)?;
+    let summary = execute(&product, &out, None)?;
     let mut rows = vec![summary.clone()];
     for controller in [
         ControllerKind::NoObserver,
@@ -121,7 +149,7 @@ pub fn comparison() -> Result<u8, Invalid> {
             controller,
             ..product.clone()
         };
-        rows.push(execute(&other, &out.join(controller.name()))?);
+        rows.push(execute(&other, &out.join(controller.name()), None)?);
     }
     let mut text = heading(&product);
     text += &table(&rows.iter().collect::<Vec<_>>());
@@ -132,29 +160,42 @@ pub fn comparison() -> Result<u8, Invalid> {
 }
 
 /// Runs an experiment and writes its files.
-fn execute(experiment: &Experiment, out: &Path) -> Result<Summary, Invalid> {
+fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result<Summary, Invalid> {
+    let scenario = &experiment.scenario;
     let controller = experiment.controller()?;
     output::prepare(out)?;
-    let trace = Draft::create(out, "trace.csv")?;
-    let mut file = Draft::create(out, "summary.json")?;
-
     let failed = |error: io::Error| Invalid::line(error).within(out.display());
+    let mut trace = Trace::new(Draft::create(out, "trace.csv")?, scenario).map_err(failed)?;
+    let mut recording = Recording::new(scenario, experiment.contacts);
+
     let mut progress = Progress::new(experiment.controller.name());
-    let mut trace = Trace::new(trace, &experiment.scenario).map_err(failed)?;
     let written = experiment.run(
         &controller,
-        |instant| trace.push(instant),
+        |instant| {
+            recording.record(scenario, instant);
+            trace.push(instant)
+        },
         |share| progress.show(share),
     );
     progress.clear();
-
+    let summary = written.map_err(failed)?;
+    recording.finish();
     warn_of_damping(experiment, &controller);
 
-    let summary = written.map_err(failed)?;
-    let json = serde_json::to_string_pretty(&summary).map_err(Invalid::line)?;
-    writeln!(file, "{json}").map_err(failed)?;
+    let run = report::Run {
+        null_stiffness: experiment.null_stiffness,
+        command,
+        ..report::Run::new(&summary, scenario, &recording)
+    };
+    let figures = out.join("figures");
+    output::prepare(&figures)?;
+    for (name, drawing) in report::figures(&run) {
+        output::write(&figures, &name, &drawing)?;
+    }
+    output::write(out, "report.html", &report::run_report(&run))?;
     trace.finish().commit().map_err(failed)?;
-    file.commit().map_err(failed)?;
+    let json = serde_json::to_string_pretty(&summary).map_err(Invalid::line)?;
+    output::write(out, "summary.json", &(json + "\n"))?;
     Ok(summary)
 }
 
@@ -195,7 +236,7 @@ fn footer(summary: &Summary, out: &Path) -> String {
         .map(|reason| format!("{reason}\n"))
         .unwrap_or_default();
     format!(
-        "\n{reason}summary.json and trace.csv are in {}\n",
+        "\n{reason}report.html, summary.json, trace.csv and figures are in {}\n",
         out.display()
     )
 }
@@ -269,13 +310,5 @@ impl Progress {
         if self.shown {
             eprint!("\r{:40}\r", "");
         }
-    }
-}
-
-impl Verdict {
-    /// Whether the run passed.
-    #[must_use]
-    pub fn passed(self) -> bool {
-        self == Self::Pass
     }
 }

@@ -87,7 +87,7 @@ fn task_error(run: &Run<'_>) -> Figure {
         let line = Series::new(
             label,
             recording.t(),
-            recording.error_mm(index),
+            recording.error_milli(index),
             Style::solid(index),
         );
         let title = if count == 1 {
@@ -122,7 +122,8 @@ fn task_error(run: &Run<'_>) -> Figure {
 
 /// The acceptance limits of a level as lines.
 fn limits(run: &Run<'_>, level: usize) -> Vec<LimitLine> {
-    let levels = run.summary.levels.len();
+    let levels = &run.scenario.levels;
+    let unit = run.summary.levels[level].unit().suffix();
     let mine = run.summary.acceptance.iter().filter_map(|acceptance| {
         let kind = match Metric::parse(&acceptance.metric, levels).ok()? {
             Metric::Rms(of) if of == level => "rms",
@@ -132,7 +133,7 @@ fn limits(run: &Run<'_>, level: usize) -> Vec<LimitLine> {
         };
         Some(LimitLine {
             value: acceptance.limit,
-            label: format!("{kind} limit {} mm", plain(acceptance.limit)),
+            label: format!("{kind} limit {} {unit}", plain(acceptance.limit)),
         })
     });
     mine.collect()

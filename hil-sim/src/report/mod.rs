@@ -26,7 +26,7 @@ pub use html::run_report;
 pub use recording::Recording;
 pub use scene::snapshots;
 
-use crate::contact::Contact;
+use crate::contact::{Hand, Interval, Push};
 use crate::names::NullStiffness;
 use crate::scenario::Scenario;
 use crate::summary::{Summary, Verdict};
@@ -59,11 +59,21 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The scripted contacts that acted.
+    /// The scripted pushes that acted.
     #[must_use]
-    pub fn contacts(&self) -> &'a [Contact] {
+    pub fn pushes(&self) -> &'a [Push] {
         if self.summary.contacts {
-            &self.scenario.contacts
+            &self.scenario.pushes
+        } else {
+            &[]
+        }
+    }
+
+    /// The hands that acted.
+    #[must_use]
+    pub fn hands(&self) -> &'a [Hand] {
+        if self.summary.contacts {
+            &self.scenario.hands
         } else {
             &[]
         }
@@ -76,18 +86,19 @@ impl<'a> Run<'a> {
             || self.recording.t().last().is_some_and(|&end| t_s <= end)
     }
 
-    /// When someone or something touched the arm: the scripted contacts, then
-    /// the hand's intervals, lettered in this order, as far as the run came.
+    /// When someone or something touched the arm: the pushes, then the hands,
+    /// lettered in this order, as far as the run came.
     #[must_use]
     pub fn bands(&self) -> Vec<plot::Band> {
-        let scripted = self.contacts().iter().map(|c| [c.from_s, c.to_s]);
-        let hand = self.recording.hand_intervals_s.iter().copied();
-        let intervals = scripted.chain(hand).enumerate();
+        let pushes = self.pushes().iter().map(Push::interval);
+        let intervals = pushes
+            .chain(self.hands().iter().map(Hand::interval))
+            .enumerate();
         intervals
-            .filter(|(_, [from, _])| self.reached(*from))
-            .map(|(index, [from, to])| plot::Band {
-                from,
-                to,
+            .filter(|(_, interval)| self.reached(interval.from_s))
+            .map(|(index, Interval { from_s, to_s, .. })| plot::Band {
+                from: from_s,
+                to: to_s,
                 label: letter(index),
             })
             .collect()

@@ -7,6 +7,7 @@
 
 use controller_core::joint::{DOF, JointState, JointVector};
 
+use crate::experiment::{Instant, LevelInstant};
 use crate::plant::PlantModel;
 use crate::scenario::Scenario;
 
@@ -38,8 +39,8 @@ pub struct Cycle<'a> {
 /// What one cycle adds to a level.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LevelCycle {
-    /// Norm of the task error \[m\].
-    pub error_m: f64,
+    /// Norm of the task error \[m\], or \[rad\].
+    pub error: f64,
     /// Norm of the task acceleration that lower levels cause \[m/s2\]; NaN
     /// where it is not known.
     pub leak: f64,
@@ -93,8 +94,6 @@ pub struct Recording {
     snapshots_due: Vec<f64>,
     /// Postures at the start and while the contacts press.
     pub arms: Vec<ArmSnapshot>,
-    /// When a person's hand held the arm \[s\], beside the scripted contacts.
-    pub hand_intervals_s: Vec<[f64; 2]>,
 }
 
 // Columns: residual, tau_ext, q and conditioning take one per joint or row,
@@ -124,7 +123,6 @@ impl Recording {
             rows: scenario.levels.iter().map(|level| level.axes.len()).sum(),
             snapshots_due: snapshot_times(scenario, contacts),
             arms: Vec::new(),
-            hand_intervals_s: Vec::new(),
         }
     }
 
@@ -147,13 +145,41 @@ impl Recording {
         put(cycle.hand_force_n.unwrap_or(f64::NAN));
         for index in 0..self.levels {
             let level = cycle.levels.get(index).copied().unwrap_or_default();
-            put(level.error_m * 1e3);
+            put(level.error * 1e3);
             put(level.leak);
             level.desired.into_iter().for_each(&mut put);
             level.actual.into_iter().for_each(&mut put);
         }
         if self.block_t.len() == self.block_len {
             self.close_block();
+        }
+    }
+
+    /// Adds a cycle of an experiment.
+    pub fn record(&mut self, scenario: &Scenario, instant: &Instant<'_>) {
+        let level = |level: &LevelInstant| LevelCycle {
+            error: level.error,
+            leak: level.leak,
+            desired: level.desired_point,
+            actual: level.actual_point,
+        };
+        let hands = !scenario.hands.is_empty();
+        self.push(&Cycle {
+            t_s: instant.t_s,
+            q: &instant.state.q,
+            residual: &instant.step.residual,
+            tau_ext: instant.tau_ext,
+            conditioning: instant.conditioning,
+            levels: &instant.levels.iter().map(level).collect::<Vec<_>>(),
+            hand_force_n: hands.then_some(instant.hand_force_n),
+        });
+        if self.snapshot_due(instant.t_s) {
+            self.arms.push(ArmSnapshot::new(
+                instant.t_s,
+                instant.plant,
+                instant.state,
+                scenario,
+            ));
         }
     }
 
@@ -244,7 +270,7 @@ impl Recording {
 
     /// Norm of a level's task error \[mm\].
     #[must_use]
-    pub fn error_mm(&self, level: usize) -> &[f64] {
+    pub fn error_milli(&self, level: usize) -> &[f64] {
         self.level(level, 0)
     }
 
@@ -283,8 +309,9 @@ fn block_len(cycles: usize) -> usize {
 /// Start, and before each contact's force ramps down; evenly spread without.
 fn snapshot_times(scenario: &Scenario, contacts: bool) -> Vec<f64> {
     let mut times = vec![0.0];
-    if contacts && !scenario.contacts.is_empty() {
-        times.extend(scenario.contacts.iter().map(|c| c.to_s - c.ramp_s));
+    let intervals = scenario.contacts().intervals();
+    if contacts && !intervals.is_empty() {
+        times.extend(intervals.iter().map(|c| c.to_s - c.ramp_s));
     } else {
         let step = scenario.duration_s / FREE_SNAPSHOTS as f64;
         times.extend((1..FREE_SNAPSHOTS).map(|k| k as f64 * step));
@@ -326,7 +353,7 @@ mod tests {
         for k in 0..scenario.cycles() {
             let peak = if k == 123_457 { 0.25 } else { 1e-4 };
             let level = LevelCycle {
-                error_m: peak,
+                error: peak,
                 leak: f64::NAN,
                 ..LevelCycle::default()
             };
@@ -341,7 +368,7 @@ mod tests {
             });
         }
         recording.finish();
-        let error = recording.error_mm(0);
+        let error = recording.error_milli(0);
         assert!(error.len() <= CAPACITY && error.len() == recording.t().len());
         assert!(error.contains(&250.0));
         assert!(recording.t().windows(2).all(|pair| pair[0] < pair[1]));

@@ -79,7 +79,7 @@ pub fn acceptance(run: &Run<'_>) -> String {
         };
         let name = format!(
             "{} <code>{}</code>",
-            escape(&metric_name(&one.metric, &run.summary.levels)),
+            escape(&metric_name(&one.metric, &run.scenario.levels)),
             escape(&one.metric)
         );
         table.row(
@@ -96,8 +96,8 @@ pub fn acceptance(run: &Run<'_>) -> String {
 }
 
 /// "rms error of level 1, flange xyz".
-fn metric_name(name: &str, levels: &[LevelFigures]) -> String {
-    let Ok(metric) = Metric::parse(name, levels.len()) else {
+fn metric_name(name: &str, levels: &[LevelSpec]) -> String {
+    let Ok(metric) = Metric::parse(name, levels) else {
         return String::new();
     };
     let (what, level) = match metric {
@@ -105,13 +105,13 @@ fn metric_name(name: &str, levels: &[LevelFigures]) -> String {
         Metric::Max(level) => ("largest error", level),
         Metric::Plateau(level) => ("worst plateau", level),
     };
-    format!("{what} of level {}, {}", level + 1, levels[level].name)
+    format!("{what} of level {}, {}", level + 1, levels[level].label())
 }
 
 /// Tracking figures per level.
 pub fn levels(run: &Run<'_>) -> String {
     let mut table = Table::new(
-        "Task error of every level in mm. Inside: during contacts and 0.3 s after them.",
+        "Task error of every level. Inside: during contacts and 0.3 s after them.",
         &columns(&[
             "Level",
             "#rms",
@@ -122,17 +122,19 @@ pub fn levels(run: &Run<'_>) -> String {
         ]),
     );
     for (index, level) in run.summary.levels.iter().enumerate() {
-        let worst = level
-            .plateau_mm
-            .iter()
-            .enumerate()
-            .filter_map(|(k, v)| Some((k, (*v)?)));
+        let plateaus = level.plateau_mm.iter().chain(&level.plateau_mrad);
+        let worst = plateaus.enumerate().filter_map(|(k, v)| Some((k, (*v)?)));
         let worst = worst.max_by(|a, b| a.1.total_cmp(&b.1));
         table.row(
-            &format!("{} {}", index + 1, escape(&level.name)),
+            &format!(
+                "{} {}, {}",
+                index + 1,
+                escape(&level.name),
+                level.unit().suffix()
+            ),
             &[
-                number(level.rms_mm),
-                number(level.max_mm),
+                number(level.rms()),
+                number(level.max()),
                 number(level.rms_inside_mm),
                 number(level.rms_outside_mm),
                 worst.map_or_else(
@@ -147,9 +149,8 @@ pub fn levels(run: &Run<'_>) -> String {
 
 /// Who pushed where, when, how hard, and how far each level gave way.
 pub fn contacts(run: &Run<'_>) -> String {
-    let scripted = run.contacts();
-    let hand = &run.recording.hand_intervals_s;
-    if scripted.is_empty() && hand.is_empty() {
+    let (scripted, hands) = (run.pushes(), run.hands());
+    if scripted.is_empty() && hands.is_empty() {
         return "<p>No contacts in this run.</p>\n".to_string();
     }
     let mut names = columns(&[
@@ -160,7 +161,8 @@ pub fn contacts(run: &Run<'_>) -> String {
         "#|F| [N]",
     ]);
     for level in 1..=run.summary.levels.len() {
-        names.push(format!("#Plateau level {level} [mm]"));
+        let unit = run.summary.levels[level - 1].unit().suffix();
+        names.push(format!("#Plateau level {level} [{unit}]"));
     }
     let mut table = Table::new(
         "Contacts, lettered as in the figures. Plateau: mean error over the last 0.2 s before the \
@@ -180,29 +182,32 @@ pub fn contacts(run: &Run<'_>) -> String {
             format!("#{force}"),
             number(Some(size)),
         ];
-        let plateaus = run
-            .summary
-            .levels
-            .iter()
-            .map(|level| level.plateau_mm.get(index));
-        cells.extend(plateaus.map(|plateau| number(plateau.copied().flatten())));
+        let levels = run.summary.levels.iter();
+        cells.extend(levels.map(|level| number(plateau(level, index))));
         table.row(&badge(index), &cells);
     }
-    for (index, [from, to]) in (scripted.len()..).zip(hand) {
+    for (index, hand) in (scripted.len()..).zip(hands) {
         let largest = run
             .summary
             .hand_force_max_n
             .map_or("\u{2013}".to_string(), figure);
         let mut cells = vec![
-            "hand".to_string(),
-            interval(*from, *to),
+            format!("hand at {}", escape(&hand.point.label())),
+            interval(hand.from_s, hand.to_s),
             "#see figure".to_string(),
             format!("#\u{2264}\u{a0}{largest}"),
         ];
-        cells.extend(run.summary.levels.iter().map(|_| number(None)));
+        let levels = run.summary.levels.iter();
+        cells.extend(levels.map(|level| number(plateau(level, index))));
         table.row(&badge(index), &cells);
     }
     table.finish()
+}
+
+/// Plateau of a level in a contact, in the level's unit.
+fn plateau(level: &LevelFigures, contact: usize) -> Option<f64> {
+    let plateaus = level.plateau_mm.iter().chain(&level.plateau_mrad);
+    plateaus.copied().nth(contact).flatten()
 }
 
 fn badge(index: usize) -> String {
@@ -333,6 +338,15 @@ fn reference(level: &LevelSpec) -> String {
         ReferenceSpec::Hold => return "held".to_string(),
         ReferenceSpec::Move { by_m, duration_s } => {
             return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
+        }
+        ReferenceSpec::Swing(swing) => {
+            return format!(
+                "swing about ({}), {} deg reached in {} s, {} s a swing",
+                list(&swing.axis),
+                plain(swing.angle_deg),
+                plain(swing.growth_s),
+                plain(swing.period_s)
+            );
         }
         ReferenceSpec::Circle(turn) => ("circle", turn),
         ReferenceSpec::Spiral(turn) => ("spiral", turn),
