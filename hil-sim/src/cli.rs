@@ -39,6 +39,12 @@ struct Cli {
 enum Command {
     /// Run a scenario and judge it: summary.json and trace.csv in the output folder
     Run(RunOptions),
+    /// All experiments of the paper: every claim with a number and a verdict
+    Paper {
+        /// Output folder
+        #[arg(long, default_value = "out/paper")]
+        out: PathBuf,
+    },
     /// Print a built-in scenario as commented TOML
     Scenario {
         /// Its name
@@ -53,7 +59,7 @@ enum Command {
 }
 
 /// What the program can be asked for.
-const COMMANDS: &[&str] = &["run", "scenario", "explain"];
+const COMMANDS: &[&str] = &["run", "paper", "scenario", "explain"];
 
 /// Runs the program with the arguments of the process.
 #[must_use]
@@ -65,6 +71,7 @@ pub fn main() -> ExitCode {
     let outcome = match cli.command {
         None => run::comparison(),
         Some(Command::Run(options)) => options.run(),
+        Some(Command::Paper { out }) => crate::paper::run(&out),
         Some(Command::Scenario { name }) => Scenario::built_in_text(&name).and_then(print),
         Some(Command::Explain { file }) => explain_file(&file).and_then(|text| print(&text)),
     };

@@ -1,2 +1,99 @@
-//! The paper in one command.
+//! The paper in one command: every experiment, every claim, every figure.
+//!
+//! [`plan`] lists the runs; [`results`] holds what they reached; [`claims`] turns
+//! each claim of section 6 into a sentence with a number and a verdict;
+//! [`stability`] follows the Lyapunov functions; [`figures`](mod@figures) and
+//! [`page`] show all of it.
+
+pub mod claims;
+pub mod figures;
+pub mod page;
+pub mod plan;
+pub mod results;
 pub mod stability;
+
+use std::io::{self, IsTerminal};
+use std::path::Path;
+
+use crate::invalid::Invalid;
+use crate::output;
+use claims::{Claim, Verdict};
+use results::Results;
+
+/// Does everything and writes it to `out`: report.html, verdicts.json, figures,
+/// and the summary of every run. Exit code 1 if a limit is exceeded; a claim of
+/// the paper that does not hold is a result, not a failure.
+///
+/// # Errors
+/// The output folder cannot be written.
+pub fn run(out: &Path) -> Result<u8, Invalid> {
+    output::prepare(out)?;
+    let figures_folder = out.join("figures");
+    output::prepare(&figures_folder)?;
+
+    let show = io::stderr().is_terminal();
+    let results = Results::of(plan::all()?, |done, all| {
+        if show {
+            eprint!("\r{done} of {all} runs");
+        }
+    })?;
+    let evidence = stability::evidence()?;
+    if show {
+        eprint!("\r{:30}\r", "");
+    }
+    let claims = claims::all(&results, &evidence);
+    let drawings = figures::all(&results, &evidence);
+
+    for outcome in results.outcomes() {
+        let folder = out.join("runs").join(&outcome.id);
+        output::prepare(&folder)?;
+        output::write(&folder, "summary.json", &json(&outcome.summary)?)?;
+    }
+    for figure in &drawings {
+        output::write(&figures_folder, figure.file, &figure.drawing.standalone())?;
+    }
+    output::write(out, "verdicts.json", &json(&claims)?)?;
+    output::write(
+        out,
+        "report.html",
+        &page::report(&results, &claims, &drawings, &evidence),
+    )?;
+
+    print!("{}", text(&claims, out));
+    Ok(u8::from(
+        claims
+            .iter()
+            .any(|claim| claim.verdict == Verdict::OutOfLimit),
+    ))
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String, Invalid> {
+    Ok(serde_json::to_string_pretty(value).map_err(Invalid::line)? + "\n")
+}
+
+/// One line per claim, and where the files are.
+fn text(claims: &[Claim], out: &Path) -> String {
+    let mut text = String::new();
+    for claim in claims {
+        text += &format!(
+            "{:<14} {:<26} {}\n",
+            claim.verdict.name(),
+            claim.id,
+            claim.figure()
+        );
+    }
+    let count = |verdict| {
+        claims
+            .iter()
+            .filter(|claim| claim.verdict == verdict)
+            .count()
+    };
+    text + &format!(
+        "\n{} confirmed, {} not confirmed, {} out of limit\n\
+         report.html, verdicts.json, figures and runs are in {}\n",
+        count(Verdict::Confirmed),
+        count(Verdict::NotConfirmed),
+        count(Verdict::OutOfLimit),
+        out.display()
+    )
+}

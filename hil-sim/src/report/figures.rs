@@ -251,7 +251,7 @@ fn priority_leak(run: &Run<'_>) -> Option<Figure> {
     Some(Figure {
         file: "priority-leak.svg",
         caption: format!(
-            "Priority leak: task acceleration of a level that the torque of everything below it causes. Strict priority means rounding only; zero is drawn at the lower edge.{}",
+            "Priority leak: task acceleration of a level that the torque of everything below it causes on this arm. With an exact model it is rounding; what remains on a mismatched arm is the error of the controller's model. Zero is drawn at the lower edge.{}",
             shading(run)
         ),
         drawing: chart.draw(),

@@ -17,7 +17,7 @@ pub mod plot;
 pub mod recording;
 pub mod scene;
 pub mod svg;
-mod tables;
+pub(crate) mod tables;
 pub mod ticks;
 
 pub use diagram::block_diagram;

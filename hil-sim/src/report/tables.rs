@@ -9,13 +9,13 @@ use crate::metrics::{LevelFigures, Metric};
 use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
 
 /// A table under construction: rows of cells that are HTML already.
-struct Table {
+pub(crate) struct Table {
     html: String,
 }
 
 impl Table {
     /// `columns` are titles; those that begin with `#` hold numbers.
-    fn new(caption: &str, columns: &[String]) -> Self {
+    pub fn new(caption: &str, columns: &[String]) -> Self {
         let mut html = format!(
             "<div class=\"scroll\"><table>\n<caption>{}</caption>\n<thead><tr>",
             escape(caption)
@@ -32,7 +32,7 @@ impl Table {
     }
 
     /// A row: its heading, then cells; a cell that begins with `#` is a number.
-    fn row(&mut self, heading: &str, cells: &[String]) {
+    pub fn row(&mut self, heading: &str, cells: &[String]) {
         let _ = write!(self.html, "<tr><th scope=\"row\">{heading}</th>");
         for cell in cells {
             let _ = match cell.strip_prefix('#') {
@@ -43,16 +43,16 @@ impl Table {
         self.html += "</tr>\n";
     }
 
-    fn finish(self) -> String {
+    pub fn finish(self) -> String {
         self.html + "</tbody></table></div>\n"
     }
 }
 
-fn columns(names: &[&str]) -> Vec<String> {
+pub(crate) fn columns(names: &[&str]) -> Vec<String> {
     names.iter().map(ToString::to_string).collect()
 }
 
-fn number(value: Option<f64>) -> String {
+pub(crate) fn number(value: Option<f64>) -> String {
     format!("#{}", value.map_or("\u{2013}".to_string(), figure))
 }
 

@@ -1,0 +1,433 @@
+//! The claims of section 6 and of the errata, each with a number and a verdict.
+
+use serde::Serialize;
+
+use super::plan::{DRIFT, Family, PERIODS_S, period_id};
+use super::results::{Results, Worst};
+use super::stability::{CYCLES_MS, Evidence};
+use crate::controllers::ControllerKind::{
+    AccelerationLevel, AccelerationLevelEstimate, AsPrinted, Hierarchical, Literal, NoObserver,
+};
+use crate::names::NullStiffness;
+use crate::plant::PlantKind::{Ideal, Realistic};
+use crate::report::ticks;
+use crate::summary::Summary;
+
+/// What became of a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Verdict {
+    /// The number says so.
+    #[serde(rename = "confirmed")]
+    Confirmed,
+    /// A claim of the paper that the number refutes: a result.
+    #[serde(rename = "not confirmed")]
+    NotConfirmed,
+    /// A limit of this project that the number exceeds: a failure.
+    #[serde(rename = "out of limit")]
+    OutOfLimit,
+}
+
+impl Verdict {
+    /// As in verdicts.json.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Confirmed => "confirmed",
+            Self::NotConfirmed => "not confirmed",
+            Self::OutOfLimit => "out of limit",
+        }
+    }
+}
+
+/// A claim with its number.
+#[derive(Clone, Debug, Serialize)]
+pub struct Claim {
+    /// Short name.
+    pub id: String,
+    /// Section of the paper, or "errata", "attribution", "stability".
+    pub section: &'static str,
+    /// The claim as a sentence.
+    pub claim: String,
+    /// The number.
+    pub measured: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is held against; see `sense`.
+    pub limit: Option<f64>,
+    /// "below", "at least".
+    pub sense: &'static str,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// The run it is from.
+    pub run: String,
+}
+
+impl Claim {
+    /// "0.459 mm, below 0.55".
+    #[must_use]
+    pub fn figure(&self) -> String {
+        let limit = self
+            .limit
+            .map(|limit| format!(", {} {}", self.sense, ticks::plain(limit)));
+        format!(
+            "{} {}{}",
+            ticks::figure(self.measured),
+            self.unit,
+            limit.unwrap_or_default()
+        )
+    }
+}
+
+/// How a number is held against its limit.
+#[derive(Clone, Copy)]
+enum Sense {
+    Below(f64),
+    AtLeast(f64),
+}
+
+/// Whose claim it is: one of the paper may be refuted, a limit of ours not.
+#[derive(Clone, Copy, PartialEq)]
+enum Whose {
+    Paper,
+    Ours,
+}
+
+/// Collects claims of one section.
+struct Section {
+    name: &'static str,
+    claims: Vec<Claim>,
+}
+
+impl Section {
+    fn add(
+        &mut self,
+        whose: Whose,
+        id: &str,
+        claim: &str,
+        found: Worst,
+        unit: &'static str,
+        sense: Sense,
+    ) {
+        let (holds, limit, word) = match sense {
+            Sense::Below(limit) => (found.value < limit, limit, "below"),
+            Sense::AtLeast(limit) => (found.value >= limit, limit, "at least"),
+        };
+        let verdict = match (holds, whose) {
+            (true, _) => Verdict::Confirmed,
+            (false, Whose::Paper) => Verdict::NotConfirmed,
+            (false, Whose::Ours) => Verdict::OutOfLimit,
+        };
+        self.claims.push(Claim {
+            id: format!("{}-{id}", self.name),
+            section: self.name,
+            claim: claim.to_string(),
+            measured: found.value,
+            unit,
+            limit: Some(limit),
+            sense: word,
+            verdict,
+            run: found.run,
+        });
+    }
+}
+
+fn rms(level: usize) -> impl Fn(&Summary) -> Option<f64> {
+    move |summary| summary.levels.get(level)?.rms()
+}
+
+fn max(level: usize) -> impl Fn(&Summary) -> Option<f64> {
+    move |summary| summary.levels.get(level)?.max()
+}
+
+fn residual(summary: &Summary) -> Option<f64> {
+    summary.residual.rms_error_nm
+}
+
+/// The smallest of one family over the largest of another.
+fn ratio(
+    results: &Results,
+    over: Family,
+    under: Family,
+    figure: impl Fn(&Summary) -> Option<f64>,
+) -> Worst {
+    let least = results.least(over, &figure);
+    let worst = results.worst(under, &figure);
+    Worst {
+        value: least.value / worst.value,
+        run: least.run,
+    }
+}
+
+/// Every claim.
+#[must_use]
+pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Claim> {
+    let mut claims = two_levels(results);
+    claims.extend(three_levels(results));
+    claims.extend(discussion(results));
+    claims.extend(attribution(results));
+    claims.extend(stability(evidence));
+    claims.extend(errata(results));
+    claims
+}
+
+fn two_levels(results: &Results) -> Vec<Claim> {
+    use Sense::{AtLeast, Below};
+    use Whose::{Ours, Paper};
+    let mut s = Section {
+        name: "6.1",
+        claims: Vec::new(),
+    };
+    let pushed = Family::pushed("two-level", Realistic, Hierarchical);
+    let ideal = Family::pushed("two-level", Ideal, Hierarchical);
+    s.add(
+        Ours,
+        "circle",
+        "The flange keeps its circle while the body is pushed: rms error.",
+        results.worst(pushed, rms(0)),
+        "mm",
+        Below(0.55),
+    );
+    s.add(
+        Ours,
+        "circle-max",
+        "The flange keeps its circle while the body is pushed: largest error.",
+        results.worst(pushed, max(0)),
+        "mm",
+        Below(1.8),
+    );
+    s.add(
+        Ours,
+        "exact",
+        "With an exact model and nobody near, the law tracks exactly but for sampling: rms error.",
+        results.worst(ideal.free(), rms(0)),
+        "mm",
+        Below(0.001),
+    );
+    s.add(
+        Ours,
+        "plateau",
+        "A steady push leaves no task error: worst plateau with an exact model.",
+        results.worst(ideal, |summary| summary.levels[0].worst_plateau()),
+        "mm",
+        Below(0.05),
+    );
+    s.add(Paper, "estimate", "The observer finds the external torque without torque sensors: rms error of the estimate, exact model.",
+        results.worst(ideal, residual), "Nm", Below(0.1));
+    s.add(Paper, "estimate-friction", "The estimate is as good on an arm with friction and a wrong model (friction is in r: it is no contact measure by itself).",
+        results.worst(pushed, residual), "Nm", Below(0.1));
+    s.add(Paper, "compliance", "The body gives way in the null space: more travel of joint 3 with the pushes than without, exact model.",
+        difference(results, ideal, |summary| Some(summary.joints.range_deg[2])), "deg", AtLeast(5.0));
+    s.add(
+        Ours,
+        "no-observer",
+        "Without the observer the task is lost: how many times larger the rms error is.",
+        ratio(
+            results,
+            Family::pushed("two-level", Realistic, NoObserver),
+            pushed,
+            rms(0),
+        ),
+        "times",
+        AtLeast(8.0),
+    );
+    s.add(Ours, "acceleration-level", "Acceleration-level priorities lose the task when pushed: how many times larger the rms error is.",
+        ratio(results, Family::pushed("two-level", Realistic, AccelerationLevel), pushed, rms(0)), "times", AtLeast(8.0));
+    s.claims
+}
+
+fn difference(
+    results: &Results,
+    pushed: Family,
+    figure: impl Fn(&Summary) -> Option<f64>,
+) -> Worst {
+    let with = results.worst(pushed, &figure);
+    let without = results.worst(pushed.free(), &figure);
+    Worst {
+        value: with.value - without.value,
+        run: with.run,
+    }
+}
+
+fn three_levels(results: &Results) -> Vec<Claim> {
+    use Sense::{AtLeast, Below};
+    use Whose::Ours;
+    let mut s = Section {
+        name: "6.2",
+        claims: Vec::new(),
+    };
+    for (scenario, limits) in [("case-1", [0.85, 0.2]), ("case-2", [0.55, 0.2])] {
+        let pushed = Family::pushed(scenario, Realistic, Hierarchical);
+        let other = Family::pushed(scenario, Realistic, AccelerationLevel);
+        for (level, limit) in limits.into_iter().enumerate() {
+            let number = level + 1;
+            s.add(
+                Ours,
+                &format!("{scenario}-level{number}"),
+                &format!(
+                    "{scenario}: level {number} keeps its task while the body is pushed: rms error."
+                ),
+                results.worst(pushed, rms(level)),
+                "mm",
+                Below(limit),
+            );
+            s.add(Ours, &format!("{scenario}-level{number}-acceleration"),
+                &format!("{scenario}: acceleration-level priorities lose level {number}: how many times larger the rms error is."),
+                ratio(results, other, pushed, rms(level)), "times", AtLeast(10.0));
+        }
+        let ideal = Family::pushed(scenario, Ideal, Hierarchical);
+        s.add(Ours, &format!("{scenario}-priority"),
+            &format!("{scenario}: lower levels do not disturb the first: its largest acceleration caused from below, exact model."),
+            results.worst(ideal, |summary| summary.levels[0].leak_max), "m/s2", Below(1e-9));
+    }
+    s.add(Ours, "case-1-exact", "case-1: the second level tracks exactly below a moving first one: rms error, exact model, nobody near.",
+        results.worst(Family::pushed("case-1", Ideal, Hierarchical).free(), rms(1)), "mm", Below(0.0005));
+    s.claims
+}
+
+fn discussion(results: &Results) -> Vec<Claim> {
+    use Sense::Below;
+    use Whose::{Ours, Paper};
+    let mut s = Section {
+        name: "6.3",
+        claims: Vec::new(),
+    };
+    let of =
+        |scenario, plant| results.worst(Family::pushed(scenario, plant, Hierarchical), residual);
+    for (plant, name) in [(Ideal, "exact model"), (Realistic, "realistic arm")] {
+        let two = of("two-level", plant);
+        let three = of("case-1", plant);
+        s.add(Paper, &format!("residual-{}", if plant == Ideal { "ideal" } else { "realistic" }),
+            &format!("Two levels have the smaller residual: rms error of the estimate, two levels over three (case-1), {name}."),
+            Worst { value: two.value / three.value, run: two.run }, "times", Below(1.0));
+    }
+    let hand = Family::pushed("hand", Realistic, Hierarchical);
+    let force = |summary: &Summary| summary.hand_force_max_n;
+    let (low, high) = (
+        hand.stiff(NullStiffness::Low),
+        hand.stiff(NullStiffness::High),
+    );
+    let soft = results.worst(low, force);
+    s.add(Ours, "hand-force", "A softer null space gives way to the hand more easily: largest hand force, low over high stiffness.",
+        Worst { value: soft.value / results.least(high, force).value, run: soft.run }, "times", Below(0.75));
+    let (soft, stiff) = (results.worst(low, rms(0)), results.worst(high, rms(0)));
+    s.add(
+        Ours,
+        "hand-tracking",
+        "The stiffness does not matter to the task: relative difference of the rms errors.",
+        Worst {
+            value: (soft.value / stiff.value - 1.0).abs(),
+            run: soft.run,
+        },
+        "of 1",
+        Below(0.2),
+    );
+    s.claims
+}
+
+fn attribution(results: &Results) -> Vec<Claim> {
+    use Sense::{AtLeast, Below};
+    use Whose::Paper;
+    let mut s = Section {
+        name: "attribution",
+        claims: Vec::new(),
+    };
+    for scenario in ["two-level", "case-1", "case-2"] {
+        let estimate = results.worst(
+            Family::pushed(scenario, Realistic, AccelerationLevelEstimate),
+            rms(0),
+        );
+        let product = results.worst(Family::pushed(scenario, Realistic, Hierarchical), rms(0));
+        s.add(Paper, &format!("{scenario}-tracking"),
+            &format!("{scenario}: the tracking is due to the inertia-weighted hierarchy, not to the estimate: level-1 rms of the acceleration-level law with the same estimate, over the hierarchical one."),
+            Worst { value: estimate.value / product.value, run: estimate.run }, "times", AtLeast(1.5));
+    }
+    let offset = |summary: &Summary| summary.joints.end_offset_deg.into_iter().reduce(f64::max);
+    let product = results.worst(Family::pushed("two-level", Realistic, Hierarchical), offset);
+    let estimate = results.least(
+        Family::pushed("two-level", Realistic, AccelerationLevelEstimate),
+        offset,
+    );
+    s.add(Paper, "posture", "What the hierarchy brings is a null space with stiffness: distance from the start posture at the end, acceleration-level law with estimate over the hierarchical one.",
+        Worst { value: estimate.value / product.value, run: estimate.run }, "times", AtLeast(2.0));
+    s.add(Paper, "observer", "The observer brings the tracking: rms error with it, over that without, same hierarchy, two-level.",
+        Worst {
+            value: 1.0 / ratio(results, Family::pushed("two-level", Realistic, NoObserver),
+                Family::pushed("two-level", Realistic, Hierarchical), rms(0)).value,
+            run: Family::pushed("two-level", Realistic, Hierarchical).id(1),
+        }, "times", Below(0.125));
+    s.claims
+}
+
+fn stability(evidence: &[Evidence]) -> Vec<Claim> {
+    let mut s = Section {
+        name: "stability",
+        claims: Vec::new(),
+    };
+    let shortest = CYCLES_MS[CYCLES_MS.len() - 1];
+    for one in evidence.iter().filter(|one| one.cycle_ms == CYCLES_MS[0]) {
+        let run = format!("{} at {} ms", one.name, one.cycle_ms);
+        let id = one.name.to_lowercase().replace(' ', "-");
+        if one.rises == 0 {
+            s.add(
+                Whose::Ours,
+                &id,
+                &format!(
+                    "{} never rises beyond rounding: cycles in which it does.",
+                    one.name
+                ),
+                Worst { value: 0.0, run },
+                "cycles",
+                Sense::Below(1.0),
+            );
+            continue;
+        }
+        let finest = evidence
+            .iter()
+            .find(|e| e.name == one.name && e.cycle_ms == shortest);
+        let shrunk = finest.map_or(f64::NAN, |e| e.largest_rise / one.largest_rise);
+        s.add(Whose::Ours, &id,
+            &format!("{} rises by a sampling term only ({} cycle(s), at most {:.1e} of its start): how the largest rise shrinks from {} to {shortest} ms.",
+                one.name, one.rises, one.largest_rise, one.cycle_ms),
+            Worst { value: shrunk, run }, "times", Sense::Below(0.0625));
+    }
+    s.claims
+}
+
+fn errata(results: &Results) -> Vec<Claim> {
+    use Sense::{AtLeast, Below};
+    use Whose::{Ours, Paper};
+    let mut s = Section {
+        name: "errata",
+        claims: Vec::new(),
+    };
+    let printed = results.first(Family::pushed("two-level", Ideal, AsPrinted));
+    s.add(Paper, "33-sign", "(33) as printed, with - Z K_l,p q~, keeps the null space stable: how long the run goes on.",
+        Worst { value: printed.summary.cycles as f64 * printed.summary.cycle_ms / 1e3, run: printed.id.clone() },
+        "s", AtLeast(20.0));
+    for period in PERIODS_S {
+        for (controller, whose, name, limit) in [
+            (
+                Literal,
+                Paper,
+                "as printed, without coupling of moving levels",
+                0.001,
+            ),
+            (Hierarchical, Ours, "with the coupling", 0.005),
+        ] {
+            let outcome = results.get(&period_id(controller, period));
+            let value = outcome.summary.levels[1].rms().unwrap_or(f64::NAN);
+            let short = if controller == Literal {
+                "printed"
+            } else {
+                "exact"
+            };
+            s.add(whose, &format!("34-coupling-{period}s-{short}"),
+                &format!("(34) {name} tracks level 2 below a circle of {period} s a turn: rms error, exact model."),
+                Worst { value, run: outcome.id.clone() }, "mm", Below(limit));
+        }
+    }
+    let drift = results.get(DRIFT);
+    s.add(Paper, "51-drift", "The posture integral (51) stays near the start posture on the circle: travel of joint 5 before the run ends.",
+        Worst { value: drift.summary.joints.range_deg[4], run: drift.id.clone() }, "deg", Below(90.0));
+    s.claims
+}

@@ -1,0 +1,159 @@
+//! What the runs reached.
+
+use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use super::plan::{Family, Planned};
+use crate::invalid::Invalid;
+use crate::report::Recording;
+use crate::scenario::Scenario;
+use crate::summary::Summary;
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Its name.
+    pub id: String,
+    /// What it was.
+    pub scenario: Scenario,
+    /// What it reached.
+    pub summary: Summary,
+    /// Its time series, of the first seed only.
+    pub recording: Option<Recording>,
+}
+
+/// All finished runs by name.
+#[derive(Clone, Debug, Default)]
+pub struct Results(BTreeMap<String, Outcome>);
+
+/// The worst of a family's figures, and the run it is from.
+#[derive(Clone, Debug)]
+pub struct Worst {
+    /// The figure.
+    pub value: f64,
+    /// Name of the run.
+    pub run: String,
+}
+
+impl Results {
+    /// Runs everything on all cores. `progress` is told how many of all are done.
+    ///
+    /// # Errors
+    /// A configuration that the core refuses: none for the built-in scenarios.
+    pub fn of(runs: Vec<Planned>, progress: impl Fn(usize, usize) + Sync) -> Result<Self, Invalid> {
+        let next = AtomicUsize::new(0);
+        let done = Mutex::new((BTreeMap::new(), None));
+        let workers = thread::available_parallelism().map_or(1, NonZero::get);
+        thread::scope(|scope| {
+            for _ in 0..workers.min(runs.len()) {
+                scope.spawn(|| {
+                    while let Some(run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        let outcome = execute(run);
+                        // A worker that panicked is reported by the scope.
+                        let Ok(mut done) = done.lock() else { return };
+                        match outcome {
+                            Ok(outcome) => {
+                                done.0.insert(outcome.id.clone(), outcome);
+                            }
+                            Err(error) => done.1 = Some(error),
+                        }
+                        progress(done.0.len(), runs.len());
+                    }
+                });
+            }
+        });
+        let (outcomes, error) = done.into_inner().unwrap_or_default();
+        error.map_or(Ok(Self(outcomes)), Err)
+    }
+
+    /// All runs, by name.
+    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        self.0.values()
+    }
+
+    /// The run of this name.
+    ///
+    /// # Panics
+    /// If the plan has no such run: an error of this program.
+    #[must_use]
+    pub fn get(&self, id: &str) -> &Outcome {
+        self.0
+            .get(id)
+            .unwrap_or_else(|| panic!("the plan has no run {id}"))
+    }
+
+    /// The first run of a family.
+    #[must_use]
+    pub fn first(&self, family: Family) -> &Outcome {
+        self.get(&family.id(1))
+    }
+
+    /// The largest of a figure over the seeds of a family; NaN if a run has none.
+    #[must_use]
+    pub fn worst(&self, family: Family, figure: impl Fn(&Summary) -> Option<f64>) -> Worst {
+        self.extreme(family, figure, |value, worst| value > worst)
+    }
+
+    /// The smallest of a figure over the seeds of a family.
+    #[must_use]
+    pub fn least(&self, family: Family, figure: impl Fn(&Summary) -> Option<f64>) -> Worst {
+        self.extreme(family, figure, |value, least| value < least)
+    }
+
+    fn extreme(
+        &self,
+        family: Family,
+        figure: impl Fn(&Summary) -> Option<f64>,
+        replaces: impl Fn(f64, f64) -> bool,
+    ) -> Worst {
+        let mut extreme = Worst {
+            value: f64::NAN,
+            run: family.id(1),
+        };
+        for seed in family.seeds() {
+            let run = family.id(seed);
+            let Some(value) = figure(&self.get(&run).summary) else {
+                return Worst {
+                    value: f64::NAN,
+                    run,
+                };
+            };
+            if extreme.value.is_nan() || replaces(value, extreme.value) {
+                extreme = Worst { value, run };
+            }
+        }
+        extreme
+    }
+}
+
+fn execute(run: &Planned) -> Result<Outcome, Invalid> {
+    let experiment = &run.experiment;
+    let controller = experiment.controller()?;
+    let scenario = &experiment.scenario;
+    let mut recording =
+        (experiment.seed == 1).then(|| Recording::new(scenario, experiment.contacts));
+    let summary = experiment
+        .run(
+            &controller,
+            |instant| {
+                if let Some(recording) = &mut recording {
+                    recording.record(scenario, instant);
+                }
+                Ok(())
+            },
+            |_| (),
+        )
+        .map_err(Invalid::line)?;
+    if let Some(recording) = &mut recording {
+        recording.finish();
+    }
+    Ok(Outcome {
+        id: run.id.clone(),
+        scenario: scenario.clone(),
+        summary,
+        recording,
+    })
+}

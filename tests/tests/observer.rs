@@ -1,0 +1,325 @@
+//! The momentum observer (30): its discrete form is the exact solution, whatever
+//! the gain and the interval, and inside the controller it is fed with what
+//! really happened.
+
+use controller_core::joint::{JointState, JointVector};
+use controller_core::law::NullDamping;
+use controller_core::measurement::{Measurement, Reference};
+use controller_core::model::LWR_IV;
+use controller_core::observer::{Observer, external_torque};
+use controller_core::task::TaskReference;
+use controller_core::trajectory::Trajectory;
+use hil_sim::plant::{Plant, PlantKind};
+use proptest::prelude::*;
+use proptest::test_runner::{RngSeed, TestRunner};
+use std::cell::RefCell;
+use stratum_tests::config::two_level;
+use stratum_tests::golden::Worst;
+use stratum_tests::oracle::closed_loop::{ClosedLoop, TWO_LEVEL_START, circle, posture};
+use stratum_tests::random::States;
+use stratum_tests::{evaluate, lwr};
+
+/// Eq (30): with a constant disturbance F and a known input that jumps at every
+/// instant, r = F (1 - e^(-K_I t)) at the instants, for any gains and any
+/// intervals. The momentum is simulated exactly; its rounding, 1e-16 |p| / h, is
+/// what the difference may show, beside that of sums of |u| and |F|.
+#[test]
+fn the_step_response_is_the_exponential_at_every_instant_for_any_gain() {
+    let config = ProptestConfig {
+        cases: 2000,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(30),
+        ..ProptestConfig::default()
+    };
+    let worst = RefCell::new(Worst::new("r / rounding"));
+    let strategy = (
+        prop::array::uniform7(-1.0..5.0f64),
+        prop::collection::vec(-4.0..-1.4f64, 1..60),
+        any::<u64>(),
+    );
+    let outcome = TestRunner::new(config).run(&strategy, |(gains, intervals, seed)| {
+        let gain: JointVector<f64> = gains.map(libm::exp10).into();
+        let mut random = States::new(seed);
+        let force = random.vector() * 30.0;
+        let mut momentum = random.vector() * 3.0;
+        let mut observer = Observer::new();
+        let first = observer.update(&gain, 0.002, &momentum);
+        prop_assert_eq!(first, JointVector::zeros());
+        let (mut time, mut largest, mut shortest) = (0.0, 0.0f64, 1.0f64);
+        for interval in intervals.into_iter().map(libm::exp10) {
+            let input = random.vector() * 50.0;
+            observer.input = input;
+            momentum += (input + force) * interval;
+            time += interval;
+            let residual = observer.update(&gain, interval, &momentum);
+            (largest, shortest) = (largest.max(momentum.amax()), shortest.min(interval));
+            for i in 0..7 {
+                let expected = -force[i] * libm::expm1(-gain[i] * time);
+                let rounding = f64::EPSILON * (largest / shortest + 80.0);
+                (worst.borrow_mut()).add((residual[i] - expected).abs() / rounding);
+            }
+        }
+        Ok(())
+    });
+    outcome.expect("every case");
+    // A few roundings per cycle of sixty.
+    worst.into_inner().within(10.0);
+}
+
+/// The continuous equation dr/dt = K_I (d(t) - r) for a disturbance that grows
+/// and swings, against the discrete form: the mean of d over each cycle is
+/// exact, so halving the cycle divides the error by four.
+#[test]
+fn a_changing_disturbance_is_followed_to_second_order() {
+    const GAIN: f64 = 50.0;
+    const OMEGA: f64 = 20.0;
+    // d = sin(omega t): r = K (K sin - w cos + w e^(-K t)) / (K^2 + w^2).
+    let solution = |t: f64| {
+        let decayed = OMEGA * libm::exp(-GAIN * t);
+        GAIN * (GAIN * libm::sin(OMEGA * t) - OMEGA * libm::cos(OMEGA * t) + decayed)
+            / (GAIN * GAIN + OMEGA * OMEGA)
+    };
+    let error = |interval: f64| {
+        let mut observer = Observer::new();
+        let mut worst = 0.0f64;
+        for k in 0..=(1.0 / interval) as u32 {
+            let t = f64::from(k) * interval;
+            let momentum = JointVector::repeat((1.0 - libm::cos(OMEGA * t)) / OMEGA);
+            let residual = observer.update(&JointVector::repeat(GAIN), interval, &momentum);
+            worst = worst.max((residual[3] - solution(t)).abs());
+        }
+        worst
+    };
+    let [coarse, fine] = [0.002, 0.001].map(error);
+    println!("errors {coarse:e}, {fine:e}");
+    assert!((3.8..4.2).contains(&(coarse / fine)), "{coarse} {fine}");
+    // h^2 K omega / 12 of the largest d.
+    assert!(coarse < 4e-4, "{coarse}");
+}
+
+/// K_I h = 3: the explicit Euler form of (30) multiplies its error by -2 every
+/// cycle, the exact form settles within a few.
+#[test]
+fn it_is_stable_where_the_euler_form_is_not() {
+    let (interval, gain, force) = (0.002, 1500.0, 7.0f64);
+    let mut observer = Observer::new();
+    let mut euler = 0.0f64;
+    let (mut residual, mut momentum) = (0.0f64, 0.5);
+    for _ in 0..30 {
+        residual = observer.update(
+            &JointVector::repeat(gain),
+            interval,
+            &JointVector::repeat(momentum),
+        )[0];
+        euler += gain * interval * (force - euler);
+        momentum += force * interval;
+    }
+    assert!((residual - force).abs() < 1e-9, "{residual}");
+    assert!((euler - force).abs() > 1e6, "{euler}");
+    // The sign is flipped in one place, eq (31).
+    assert_eq!(
+        external_torque(&JointVector::repeat(residual))[6],
+        -residual
+    );
+}
+
+/// Starts at full speed: the first residual is exactly zero and stays at
+/// rounding while nothing pushes. Starting from p = 0 as (30) is printed the
+/// residual would begin with K_I p.
+#[test]
+fn starting_in_motion_gives_no_jump() {
+    let model = lwr();
+    let start = posture(TWO_LEVEL_START);
+    let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
+    let push = JointVector::from([10.0, -5.0, 3.0, 5.0, 0.2, 0.1, 0.001])
+        + evaluate(&model, plant.state()).1.gravity;
+    for _ in 0..100 {
+        plant.advance(0.0, &push, |_, _, _| JointVector::zeros());
+    }
+    let momentum = evaluate(&model, plant.state()).1.momentum;
+    assert!(momentum.amax() > 1.0, "a moving arm: {momentum}");
+    let controller = ClosedLoop::<f64>::new(&two_level(), start, &[Trajectory::Hold]).controller;
+    let mut state = controller_core::controller::ControllerState::new();
+    let mut largest = 0.0f64;
+    for cycle in 0..50 {
+        let JointState { q, dq } = *plant.state();
+        let x = plant
+            .model()
+            .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
+            .0;
+        let step = controller.step(
+            &mut state,
+            &Measurement {
+                q,
+                dq,
+                interval_s: 0.002,
+            },
+            &Reference {
+                tasks: [TaskReference::rest(x)].into_iter().collect(),
+                posture: q,
+            },
+        );
+        assert!(step.status.fault.is_none(), "{:?}", step.status);
+        if cycle == 0 {
+            assert_eq!(step.residual, JointVector::zeros());
+        }
+        largest = largest.max(step.residual.amax());
+        plant.advance(0.0, &step.torque, |_, _, _| JointVector::zeros());
+    }
+    println!(
+        "largest residual {largest:.3} Nm, K_I p = {:.0} Nm/s",
+        50.0 * momentum.amax()
+    );
+    // C^T dq - g is held over 2 ms while the arm brakes hard.
+    assert!(largest < 0.5, "{largest}");
+}
+
+/// Twenty cycles towards a reference 0.3 m away saturate joints. The observer
+/// knows the torque that was applied; with the one demanded r would show the
+/// difference, hundreds of Nm.
+#[test]
+fn saturated_torque_is_not_taken_for_an_external_one() {
+    let far = Trajectory::Move {
+        by: [0.0, 0.2, 0.1].into(),
+        duration_s: 0.1,
+    };
+    let mut closed = ClosedLoop::<f64>::new(&two_level(), posture(TWO_LEVEL_START), &[far]);
+    let (mut saturated, mut largest, mut excess) = (0, 0.0f64, 0.0f64);
+    for _ in 0..20 {
+        let mut demand = JointVector::zeros();
+        let seen = closed.step_with(
+            |cycle| {
+                let torque = controller_core::law::TorqueDemand::hierarchical(cycle);
+                demand = torque.0;
+                torque
+            },
+            |_, _, _| JointVector::zeros(),
+        );
+        assert!(seen.step.status.fault.is_none(), "{:?}", seen.step.status);
+        saturated += u32::from(seen.step.status.saturated.any());
+        excess = excess.max((demand - seen.step.torque).amax());
+        largest = largest.max(seen.step.residual.amax());
+    }
+    println!("{saturated} cycles cut by up to {excess:.0} Nm, residual {largest:.2} Nm");
+    assert!(saturated >= 5 && excess > 100.0);
+    // What C^T dq - g changes within a cycle at such accelerations.
+    assert!(largest < 2.0, "{largest}");
+}
+
+/// Runs the fast circle with plant steps of 0.5 ms and controller intervals of 2
+/// to 10 of them, pushed by `push` \[N\] along y at the elbow from 1 s on. Returns
+/// the largest distance of r from the exponential answer to tau_ext.
+fn with_varying_intervals(push: f64, claimed: impl Fn(f64) -> f64) -> f64 {
+    const STEP: f64 = 0.0005;
+    let start = posture(TWO_LEVEL_START);
+    let motion = circle(0.1, 3.0);
+    let controller = ClosedLoop::<f64>::new(&two_level(), start, &[motion]).controller;
+    let mut state = controller_core::controller::ControllerState::new();
+    let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, STEP, 1);
+    let origin = plant
+        .model()
+        .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
+        .0;
+    let mut random = States::new(8);
+    let (mut t, mut interval, mut worst) = (0.0, 0.002, 0.0f64);
+    let mut expected = JointVector::zeros();
+    let force = [0.0, push, 0.0].into();
+    while t < 4.0 {
+        let JointState { q, dq } = *plant.state();
+        let step = controller.step(
+            &mut state,
+            &Measurement {
+                q,
+                dq,
+                interval_s: claimed(interval),
+            },
+            &Reference {
+                tasks: [motion.sample(&origin, t)].into_iter().collect(),
+                posture: start,
+            },
+        );
+        assert!(step.status.fault.is_none(), "{:?}", step.status);
+        worst = worst.max((step.residual - expected).amax());
+        let count = 2 + (4.5 * (random.signed() + 1.0)) as u32;
+        interval = f64::from(count) * STEP;
+        for _ in 0..count {
+            let pushed = t >= 1.0;
+            plant.advance(t, &step.torque, |_, model, state| {
+                let torque = model.point_torque(&state.q, 3, &[0.0; 3].into(), &force);
+                if pushed { torque } else { JointVector::zeros() }
+            });
+            // The continuous observer: dr/dt = K_I (-tau_ext - r).
+            let acting = plant
+                .model()
+                .point_torque(&plant.state().q, 3, &[0.0; 3].into(), &force);
+            let target = if pushed { acting } else { JointVector::zeros() };
+            expected += (target - expected) * -libm::expm1(-50.0 * STEP);
+            t += STEP;
+        }
+    }
+    worst
+}
+
+/// Intervals between 1 and 5 ms, known to the controller: r is the continuous
+/// observer's answer. With the nominal 2 ms claimed instead it is not.
+#[test]
+fn the_interval_that_counts_is_the_measured_one() {
+    let free = with_varying_intervals(0.0, |interval| interval);
+    let pushed = with_varying_intervals(35.0, |interval| interval);
+    let nominal = with_varying_intervals(0.0, |_| 0.002);
+    println!("free {free:.3} Nm, pushed {pushed:.3} Nm, nominal claimed {nominal:.2} Nm");
+    // u is held over up to 5 ms on a circle of 0.1 m in 3 s: hundredths of Nm.
+    assert!(free < 0.05, "{free}");
+    // tau_ext of 14 Nm is met by a push that starts between instants.
+    assert!(pushed < 0.2, "{pushed}");
+    assert!(nominal > 10.0 * free, "{nominal}");
+}
+
+/// Torque that acts two cycles late: told of it, the observer stays at zero on a
+/// circle; told nothing, it takes the delay for a push.
+#[test]
+fn dead_time_is_known_to_the_observer() {
+    let largest = |dead_cycles: u8| {
+        let start = posture(TWO_LEVEL_START);
+        let mut config = two_level::<f64>();
+        config.null_space.damping = NullDamping::Inertia(10.0);
+        config.dead_cycles = dead_cycles;
+        let motion = circle(0.1, 2.0);
+        let controller = ClosedLoop::new(&config, start, &[motion]).controller;
+        let mut state = controller_core::controller::ControllerState::new();
+        let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
+        let origin = plant
+            .model()
+            .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
+            .0;
+        let gravity = evaluate(&lwr(), plant.state()).1.gravity;
+        let mut wire = [gravity; 2];
+        let mut largest = 0.0f64;
+        for cycle in 0..1500 {
+            let t = f64::from(cycle) * 0.002;
+            let JointState { q, dq } = *plant.state();
+            let step = controller.step(
+                &mut state,
+                &Measurement {
+                    q,
+                    dq,
+                    interval_s: 0.002,
+                },
+                &Reference {
+                    tasks: [motion.sample(&origin, t)].into_iter().collect(),
+                    posture: start,
+                },
+            );
+            assert!(step.status.is_clear(), "{:?}", step.status);
+            largest = largest.max(step.residual.amax());
+            plant.advance(t, &wire[1], |_, _, _| JointVector::zeros());
+            wire = [step.torque, wire[0]];
+        }
+        largest
+    };
+    let (told, untold) = (largest(2), largest(0));
+    println!("told {told:.4} Nm, untold {untold:.3} Nm");
+    // u is held over 2 ms; the circle of 0.1 m takes 2 s.
+    assert!(told < 0.05, "{told}");
+    assert!(untold > 5.0 * told, "{untold}");
+}
