@@ -16,7 +16,7 @@ use crate::controllers::{ControllerKind, Decision, LawGains};
 use crate::invalid::Invalid;
 use crate::metrics::{FaultCounts, Metrics};
 use crate::names::{Named, NullStiffness};
-use crate::plant::{Plant, PlantKind, PlantModel};
+use crate::plant::{Plant, PlantKind, PlantModel, PlantOptions};
 use crate::scenario::Scenario;
 use crate::summary::{self, Summary, Verdict};
 
@@ -38,6 +38,8 @@ pub struct Experiment {
     pub null_stiffness: NullStiffness,
     /// Seed of mismatch and noise.
     pub seed: u64,
+    /// What the plant does beyond the reference.
+    pub options: PlantOptions,
 }
 
 /// One cycle of a run, as it is recorded.
@@ -95,7 +97,9 @@ impl Experiment {
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
         let model = ArmModel::new(self.scenario.arm()).map_err(Invalid::line)?;
-        let mut config = self.scenario.controller_config(0);
+        let mut config = self
+            .scenario
+            .controller_config(self.options.dead_cycles as u8);
         config.null_space.stiffness *= self.null_stiffness.factor();
         Controller::new(&model, &config)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
@@ -125,12 +129,13 @@ impl Experiment {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
             stiffness: controller.null_space().stiffness,
         };
-        let mut plant = Plant::new(
+        let mut plant = Plant::with_options(
             self.plant,
             scenario.arm(),
             scenario.start(),
             cycle_s,
             self.seed,
+            self.options,
         );
         let mut state = ControllerState::new();
         let limits = controller.model().position_limit();
@@ -196,7 +201,13 @@ impl Experiment {
     fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {
         let scenario = &self.scenario;
         let levels = metrics.levels(&scenario.levels);
-        let acceptance = summary::judge(scenario, self.plant, self.contacts, &levels);
+        let acceptance = summary::judge(
+            scenario,
+            self.plant,
+            self.contacts,
+            self.options.dead_cycles,
+            &levels,
+        );
         let mut faults = FaultCounts::default();
         let (verdict, reason) = match stop {
             None => summary::verdict(&acceptance),

@@ -77,6 +77,6 @@ impl Named for NullStiffness {
 pub struct Switch(pub bool);
 
 impl Named for Switch {
-    const THING: &'static str = "contacts";
+    const THING: &'static str = "switch";
     const ALL: &'static [(&'static str, Self)] = &[("on", Self(true)), ("off", Self(false))];
 }

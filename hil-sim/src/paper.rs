@@ -52,6 +52,7 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
     for figure in &drawings {
         output::write(&figures_folder, figure.file, &figure.drawing.standalone())?;
     }
+    output::write(out, "stability.json", &json(&evidence)?)?;
     output::write(out, "verdicts.json", &json(&claims)?)?;
     output::write(
         out,

@@ -20,7 +20,7 @@ use crate::contact::{Contacts, Hand, Push};
 use crate::invalid::{Invalid, in_range, positive};
 use crate::metrics::Metric;
 use crate::names::Named;
-use crate::plant::{PlantKind, PlantModel};
+use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantModel};
 
 pub use geometry::orientation;
 pub use point::PointSpec;
@@ -175,6 +175,9 @@ pub struct Limit {
     pub plant: String,
     /// With contacts or without.
     pub contacts: bool,
+    /// For runs with so many cycles of dead time.
+    #[serde(default)]
+    pub dead_cycles: usize,
     /// Name of the metric, such as "level1_rms_mm".
     pub metric: String,
     /// The metric passes below this.
@@ -318,6 +321,14 @@ impl Scenario {
             let place = |error: Invalid| error.within(format_args!("limit {number}"));
             PlantKind::from_name(&limit.plant).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
+            if limit.dead_cycles > DEAD_CYCLES_MAX {
+                let allowed = format_args!("0 to {DEAD_CYCLES_MAX}");
+                return Err(place(Invalid::new(
+                    "dead_cycles",
+                    limit.dead_cycles,
+                    allowed,
+                )));
+            }
             positive("below", limit.below, 1e9).map_err(place)?;
         }
         Ok(())

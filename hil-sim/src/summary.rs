@@ -83,16 +83,20 @@ pub struct Summary {
     pub faults: FaultCounts,
 }
 
-/// Holds the figures against the limits that the scenario sets for this plant.
+/// Holds the figures against the limits that the scenario sets for this plant,
+/// with or without contacts and with this dead time.
 #[must_use]
 pub fn judge(
     scenario: &Scenario,
     plant: PlantKind,
     contacts: bool,
+    dead_cycles: usize,
     levels: &[LevelFigures],
 ) -> Vec<Acceptance> {
     let applies = scenario.limits.iter().filter(|limit| {
-        PlantKind::from_name(&limit.plant) == Ok(plant) && limit.contacts == contacts
+        PlantKind::from_name(&limit.plant) == Ok(plant)
+            && limit.contacts == contacts
+            && limit.dead_cycles == dead_cycles
     });
     applies
         .filter_map(|limit| {

@@ -53,6 +53,8 @@ fn arguments() {
         "run two-level --contacts maybe",
         "run two-level --controller hierarchial",
         "run two-level --null-stiffness soft",
+        "run two-level --dead-cycles 9",
+        "run two-level --stiction perhaps",
         "run two-level --seed -1",
         "run two-level --seed 1.5",
         "run two-level --duration NaN",
@@ -78,6 +80,7 @@ fn arguments() {
         "scenario tow-level",
         "scenario",
         "explain missing.json",
+        "paper --out a-file",
     ] {
         let words: Vec<_> = arguments.split(' ').collect();
         writeln!(lines, "$ hil-sim {arguments}\n{}\n", refusal(&words, "")).expect("memory");

@@ -4,7 +4,7 @@
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
 use hil_sim::names::NullStiffness;
-use hil_sim::plant::PlantKind;
+use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::scenario::Scenario;
 use hil_sim::summary::{Summary, Verdict};
 use hil_sim::trace::Trace;
@@ -22,6 +22,7 @@ fn run(
         controller,
         null_stiffness: NullStiffness::Normal,
         seed,
+        options: PlantOptions::default(),
     };
     let controller = experiment.controller().expect("a valid configuration");
     let mut trace = Trace::new(Vec::new(), &experiment.scenario).expect("writing to memory");

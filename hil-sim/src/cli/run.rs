@@ -12,7 +12,7 @@ use crate::experiment::Experiment;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{Named, NullStiffness, Switch};
 use crate::output::{self, Draft};
-use crate::plant::PlantKind;
+use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantOptions};
 use crate::report::{self, Recording};
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
@@ -36,6 +36,16 @@ pub struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
+    /// Cycles between the torque and its effect, 0 to 8; above 0 the null-space
+    /// damping is the scenario's inertia-shaped one
+    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    dead_cycles: usize,
+    /// True stiction instead of smooth friction (realistic plant): on, off
+    #[arg(long, default_value = "off")]
+    stiction: String,
+    /// Elastic joints (realistic plant): on, off
+    #[arg(long, default_value = "off")]
+    elasticity: String,
     /// Seed of mismatch and noise
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
@@ -53,6 +63,14 @@ pub struct RunOptions {
 fn seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| format!("whole numbers 0 to {}", u64::MAX))
+}
+
+fn dead_cycles(text: &str) -> Result<usize, String> {
+    let allowed = || format!("whole numbers 0 to {DEAD_CYCLES_MAX}");
+    text.parse()
+        .ok()
+        .filter(|cycles| *cycles <= DEAD_CYCLES_MAX)
+        .ok_or_else(allowed)
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -95,6 +113,9 @@ impl RunOptions {
         option("contacts", &self.contacts, "on");
         option("controller", &self.controller, "hierarchical");
         option("null-stiffness", &self.null_stiffness, "normal");
+        option("dead-cycles", &self.dead_cycles.to_string(), "0");
+        option("stiction", &self.stiction, "off");
+        option("elasticity", &self.elasticity, "off");
         option("seed", &self.seed.to_string(), "1");
         for (name, value) in [("duration", self.duration), ("cycle-ms", self.cycle_ms)] {
             if let Some(value) = value {
@@ -116,12 +137,24 @@ impl RunOptions {
         Ok(Experiment {
             scenario,
             plant: PlantKind::from_name(&self.plant)?,
-            contacts: Switch::from_name(&self.contacts)?.0,
+            contacts: switch("--contacts", &self.contacts)?,
             controller: ControllerKind::from_name(&self.controller)?,
             null_stiffness: NullStiffness::from_name(&self.null_stiffness)?,
             seed: self.seed,
+            options: PlantOptions {
+                stiction: switch("--stiction", &self.stiction)?,
+                elasticity: switch("--elasticity", &self.elasticity)?,
+                dead_cycles: self.dead_cycles,
+                substeps_factor: 0,
+            },
         })
     }
+}
+
+fn switch(option: &str, value: &str) -> Result<bool, Invalid> {
+    Ok(Switch::from_name(value)
+        .map_err(|error| error.within(option))?
+        .0)
 }
 
 /// The two-level experiment with every controller, as `cargo run` does it. The
@@ -138,6 +171,7 @@ pub fn comparison() -> Result<u8, Invalid> {
         controller: ControllerKind::Hierarchical,
         null_stiffness: NullStiffness::Normal,
         seed: 1,
+        options: PlantOptions::default(),
     };
     let summary = execute(&product, &out, None)?;
     let mut rows = vec![summary.clone()];
@@ -204,7 +238,11 @@ fn warn_of_damping(
     experiment: &Experiment,
     controller: &controller_core::controller::Controller<f64>,
 ) {
-    let bound = experiment.scenario.controller_config(0).damping_bound();
+    let dead_cycles = experiment.options.dead_cycles as u8;
+    let bound = experiment
+        .scenario
+        .controller_config(dead_cycles)
+        .damping_bound();
     let mode = controller.fastest_mode();
     let value = mode.rate * experiment.scenario.cycle_s();
     if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {

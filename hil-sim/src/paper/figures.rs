@@ -249,14 +249,14 @@ fn hand(results: &Results) -> Figure {
 }
 
 fn attribution(results: &Results) -> Figure {
-    let outcome = |controller| results.first(Family::pushed("two-level", Realistic, controller));
+    let outcome = |controller| results.first(Family::pushed("case-2", Realistic, controller));
     let mut chart = over_time(
         outcome(Hierarchical),
         "attribution",
-        "Posture \u{2013} two-level, realistic arm, pushed".into(),
-        "Angles of joints 3 and 5 with and without null-space stiffness.",
+        "Posture \u{2013} case-2, realistic arm, pushed".into(),
+        "Angles of joints 1 and 3 with and without null-space stiffness.",
     );
-    for joint in [2, 4] {
+    for joint in [0, 2] {
         let controllers = [Hierarchical, AccelerationLevelEstimate]
             .into_iter()
             .enumerate();

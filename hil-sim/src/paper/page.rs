@@ -1,6 +1,6 @@
 //! The report of all experiments: one HTML file that needs nothing else.
 
-use super::claims::{Claim, Verdict};
+use super::claims::{self, Claim, Verdict};
 use super::figures::Figure;
 use super::results::Results;
 use super::stability::Evidence;
@@ -38,7 +38,7 @@ pub fn report(
             content += "<p>(54) and (55) cannot hold as printed: under a constant push what \
                         converges is Z (K_q q~ \u{2212} \u{3c4}_ext), so q~ tends to the \
                         deflection that balances the push, not to zero. The plateaus of the \
-                        null space in the figures above show it.</p>\n";
+                        null space in the figures below show it.</p>\n";
         }
         html::section(&mut body, heading, &content);
     }
@@ -107,7 +107,7 @@ fn claims_table<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
         };
         let limit = claim
             .limit
-            .map(|limit| format!("#{}\u{a0}{}", claim.sense, ticks::plain(limit)));
+            .map(|limit| format!("#{}\u{a0}{}", claim.sense, claims::shown(limit)));
         table.row(
             &escape(&claim.claim),
             &[
@@ -139,7 +139,11 @@ fn rises(evidence: &[Evidence]) -> String {
             &[
                 format!("#{}", ticks::plain(one.cycle_ms)),
                 format!("#{}", one.rises),
-                format!("#{:.1e}", one.largest_rise),
+                if one.rises == 0 {
+                    "#0".to_string()
+                } else {
+                    format!("#{:.1e}", one.largest_rise)
+                },
             ],
         );
     }

@@ -8,6 +8,7 @@ use crate::experiment::Experiment;
 use crate::invalid::Invalid;
 use crate::names::{Named, NullStiffness};
 use crate::plant::PlantKind::{self, Ideal, Realistic};
+use crate::plant::PlantOptions;
 use crate::scenario::{PostureSpec, ReferenceSpec, Scenario};
 
 /// Seeds over which figures of the realistic plant are the worst.
@@ -104,6 +105,7 @@ impl Family {
                 controller: self.controller,
                 null_stiffness: self.stiffness,
                 seed,
+                options: PlantOptions::default(),
             },
         })
     }

@@ -25,6 +25,7 @@ use controller_core::law::{Posture, TaskMotion, TorqueDemand};
 use controller_core::measurement::{Measurement, Reference};
 use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::task::TaskRows;
+use serde::Serialize;
 
 use crate::invalid::Invalid;
 use crate::plant::{Plant, PlantKind};
@@ -53,15 +54,17 @@ const RESIDUAL_WEIGHT: f64 = 2.0;
 const ROUNDING: f64 = 1e-13;
 
 /// One Lyapunov function along one run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Evidence {
     /// "V1", "V2", .., "Vl".
     pub name: String,
     /// Cycle time \[ms\].
     pub cycle_ms: f64,
     /// Times \[s\].
+    #[serde(skip)]
     pub t: Vec<f64>,
     /// Values, relative to the first.
+    #[serde(skip)]
     pub value: Vec<f64>,
     /// Cycles in which it rises beyond rounding.
     pub rises: usize,

@@ -3,8 +3,8 @@
 //!
 //! F(dq) = F_c tanh(dq / 0.02 rad/s) + F_v dq,
 //!
-//! which opposes the motion: the joint feels -F. There is no stiction; under a
-//! torque below F_c a joint creeps instead of sticking.
+//! which opposes the motion: the joint feels -F. Under a torque below F_c a joint
+//! creeps instead of sticking; [`super::stiction`] is the law with which it sticks.
 
 use controller_core::joint::JointVector;
 

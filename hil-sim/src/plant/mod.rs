@@ -7,26 +7,35 @@
 //!
 //! Two kinds. `ideal` is the exact model, integrated to rounding; it shows what
 //! the control law does. `realistic` adds what a real arm adds: friction, wrong
-//! masses, torque noise, encoders, a differentiated velocity.
+//! masses, torque noise, encoders, a differentiated velocity. On request
+//! ([`PlantOptions`]) also joints that stick or are elastic, and dead time.
 //!
 //! Everything is `f64` and uses no elementary function of the platform, so a
 //! seed gives the same bytes on every machine.
 
 mod aba;
+mod drive;
+pub mod elastic;
 pub mod friction;
 mod integrate;
 pub mod mismatch;
 pub mod model;
 pub mod noise;
+mod options;
 pub mod sensor;
+pub mod stiction;
 
 use controller_core::joint::{JointState, JointVector};
 use controller_core::model::ArmParameters;
+
+use drive::Drive;
+use options::DeadTime;
 
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
 pub use mismatch::mismatched;
 pub use model::PlantModel;
 pub use noise::Rng;
+pub use options::{DEAD_CYCLES_MAX, PlantOptions};
 pub use sensor::Sensor;
 
 /// Standard deviation of the torque noise \[Nm\] per joint, of one draw per
@@ -59,6 +68,8 @@ pub struct Plant {
     model: PlantModel,
     state: JointState<f64>,
     cycle_s: f64,
+    options: PlantOptions,
+    dead_time: DeadTime,
     imperfections: Option<Imperfections>,
 }
 
@@ -67,6 +78,8 @@ pub struct Plant {
 struct Imperfections {
     sensor: Sensor,
     torque_noise: Rng,
+    /// Unless the joints are rigid and their friction smooth.
+    drive: Option<Drive>,
 }
 
 impl Plant {
@@ -82,16 +95,41 @@ impl Plant {
         cycle_s: f64,
         seed: u64,
     ) -> Self {
+        Self::with_options(kind, parameters, q0, cycle_s, seed, PlantOptions::default())
+    }
+
+    /// As [`Plant::new`], with effects that the reference plant leaves out. The
+    /// ideal plant takes the dead time and the integration steps from `options`
+    /// and ignores stiction and elasticity.
+    ///
+    /// During the dead time at the start the motors hold the arm by the gravity
+    /// torque of `parameters` at `q0`. The springs of elastic joints start in
+    /// equilibrium with the arm's true weight.
+    ///
+    /// # Panics
+    /// More than [`DEAD_CYCLES_MAX`] dead cycles.
+    #[must_use]
+    pub fn with_options(
+        kind: PlantKind,
+        parameters: &ArmParameters,
+        q0: JointVector<f64>,
+        cycle_s: f64,
+        seed: u64,
+        options: PlantOptions,
+    ) -> Self {
+        let nominal = PlantModel::new(parameters);
+        let dead_time = DeadTime::new(options.dead_cycles, nominal.gravity_torque(&q0));
         let (model, imperfections) = match kind {
-            PlantKind::Ideal => (PlantModel::new(parameters), None),
+            PlantKind::Ideal => (nominal, None),
             PlantKind::Realistic => {
                 let mut rng = Rng::new(seed, noise::stream::MISMATCH);
+                let model = PlantModel::new(&mismatched(parameters, &mut rng));
                 let imperfections = Imperfections {
                     sensor: Sensor::new(&q0, cycle_s),
                     torque_noise: Rng::new(seed, noise::stream::TORQUE),
+                    drive: Drive::new(&model, &q0, &options),
                 };
-                let parameters = mismatched(parameters, &mut rng);
-                (PlantModel::new(&parameters), Some(imperfections))
+                (model, Some(imperfections))
             }
         };
         Self {
@@ -101,6 +139,8 @@ impl Plant {
                 dq: JointVector::zeros(),
             },
             cycle_s,
+            options,
+            dead_time,
             imperfections,
         }
     }
@@ -111,10 +151,18 @@ impl Plant {
         &self.model
     }
 
-    /// The true state.
+    /// The true state, of the links.
     #[must_use]
     pub fn state(&self) -> &JointState<f64> {
         &self.state
+    }
+
+    /// Angles \[rad\] and speeds \[rad/s\] of the motors behind their gears, if the
+    /// joints are elastic.
+    #[must_use]
+    pub fn motors(&self) -> Option<&JointState<f64>> {
+        let drive = self.imperfections.as_ref()?.drive.as_ref()?;
+        drive.elastic.as_ref().map(|elastic| &elastic.motor)
     }
 
     /// What the arm reports at this cycle instant: the true state (ideal), or
@@ -128,7 +176,8 @@ impl Plant {
     }
 
     /// Moves on by one cycle from time `t_s` \[s\] with the motor torque
-    /// `torque` \[Nm\], positive along +q, held constant.
+    /// `torque` \[Nm\], positive along +q, held constant. With dead time the torque
+    /// acts that many cycles later.
     ///
     /// `external(t, model, state)` gives the joint torque +J^T F \[Nm\] of
     /// contact forces F on the arm (that is, -tau_ext). The ideal plant asks
@@ -140,11 +189,13 @@ impl Plant {
         torque: &JointVector<f64>,
         mut external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) {
+        let torque = &self.dead_time.pass(torque);
         let model = &self.model;
         let mut contact = |t: f64, state: &JointState<f64>| external(t, model, state);
         self.state = match &mut self.imperfections {
             None => {
-                let substeps = integrate::ideal_substeps(self.cycle_s);
+                let reference = integrate::ideal_substeps(self.cycle_s);
+                let substeps = self.options.substeps(reference);
                 integrate::ideal(
                     model,
                     &self.state,
@@ -159,16 +210,23 @@ impl Plant {
                 let rng = &mut imperfections.torque_noise;
                 let noisy =
                     JointVector::from_fn(|i, _| torque[i] + TORQUE_NOISE[i] * rng.gaussian());
-                let substeps = integrate::realistic_substeps(self.cycle_s);
-                integrate::realistic(
-                    model,
-                    &self.state,
-                    t_s,
-                    self.cycle_s,
-                    substeps,
-                    &noisy,
-                    &mut contact,
-                )
+                let reference = integrate::realistic_substeps(self.cycle_s);
+                let substeps = self.options.substeps(reference);
+                let (state, cycle_s) = (&self.state, self.cycle_s);
+                match &mut imperfections.drive {
+                    None => integrate::realistic(
+                        model,
+                        state,
+                        t_s,
+                        cycle_s,
+                        substeps,
+                        &noisy,
+                        &mut contact,
+                    ),
+                    Some(drive) => {
+                        drive.cycle(model, state, t_s, cycle_s, substeps, &noisy, &mut contact)
+                    }
+                }
             }
         };
     }

@@ -207,6 +207,25 @@ impl PlantModel {
         energy
     }
 
+    /// Gravity torque g(q) \[Nm\]: what the motors must give to hold the arm at
+    /// `q` \[rad\].
+    #[must_use]
+    pub fn gravity_torque(&self, q: &JointVector<f64>) -> JointVector<f64> {
+        let mut torque = JointVector::zeros();
+        for (number, link) in (1..).zip(&self.links) {
+            torque -= self.point_torque(q, number, &link.com, &(self.gravity * link.mass));
+        }
+        torque
+    }
+
+    /// The same arm where nothing has weight.
+    pub(super) fn weightless(&self) -> Self {
+        Self {
+            gravity: Vector3::zeros(),
+            ..self.clone()
+        }
+    }
+
     fn chain(&self, q: &JointVector<f64>, link: usize) -> Chain {
         let mut chain = Chain {
             axes: [Vector3::zeros(); DOF],

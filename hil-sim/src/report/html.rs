@@ -216,7 +216,7 @@ mod tests {
     use crate::controllers::ControllerKind;
     use crate::experiment::Experiment;
     use crate::names::NullStiffness;
-    use crate::plant::PlantKind;
+    use crate::plant::{PlantKind, PlantOptions};
     use controller_core::joint::JointVector;
 
     /// A short real summary, and a recording with what `value` gives.
@@ -230,9 +230,10 @@ mod tests {
             controller: ControllerKind::Hierarchical,
             null_stiffness: NullStiffness::Normal,
             seed: 1,
+            options: PlantOptions::default(),
         };
         let controller = experiment.controller().unwrap();
-        let (summary, _) = experiment.run(&controller, Vec::new(), |_| ()).unwrap();
+        let summary = experiment.run(&controller, |_| Ok(()), |_| ()).unwrap();
         let mut recording = Recording::new(&scenario, true);
         let joints = JointVector::repeat(value);
         for k in 0..100 {
@@ -243,7 +244,7 @@ mod tests {
                 tau_ext: &joints,
                 conditioning: &[value; 7],
                 levels: &[LevelCycle {
-                    error_m: value,
+                    error: value,
                     leak: value,
                     desired: [value; 3],
                     actual: [value; 3],
