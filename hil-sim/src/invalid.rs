@@ -5,50 +5,104 @@ use std::fmt;
 
 /// Something given from outside that cannot be used. Exit code 2.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Invalid(String);
+pub struct Invalid {
+    text: String,
+    path: Vec<Segment>,
+}
+
+/// A step on the way to a value in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Segment {
+    /// A key of a table.
+    Key(String),
+    /// An entry of a list, counted from 0.
+    Index(usize),
+}
 
 impl Invalid {
-    /// "`thing`: `value`; allowed: `allowed`".
+    /// "`thing`: `value`; allowed: `allowed`". The first word of `thing` is the key
+    /// of the value, if it is from a file.
     pub fn new(
         thing: impl fmt::Display,
         value: impl fmt::Display,
         allowed: impl fmt::Display,
     ) -> Self {
-        Self::line(format!("{thing}: {value}; allowed: {allowed}"))
+        let thing = thing.to_string();
+        let key = thing.split(' ').next().unwrap_or("").to_string();
+        let error = Self::line(format!("{thing}: {value}; allowed: {allowed}"));
+        Self {
+            path: vec![Segment::Key(key)],
+            ..error
+        }
     }
 
     /// A sentence that already says all three.
     pub fn line(text: impl fmt::Display) -> Self {
         // A value may carry line breaks of its own: keep the error one line.
-        Self(
-            text.to_string()
-                .split_whitespace()
-                .collect::<Vec<_>>()
-                .join(" "),
-        )
+        let text = text
+            .to_string()
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        Self {
+            text,
+            path: Vec::new(),
+        }
     }
 
     /// An unknown name: says which are known, the nearest one first.
     pub fn name(thing: &str, given: &str, known: &[&str]) -> Self {
         let all = known.join(", ");
-        match nearest(given, known) {
-            Some(name) => Self::line(format!(
-                "{thing}: unknown '{given}', did you mean '{name}'? allowed: {all}"
-            )),
-            None => Self::line(format!("{thing}: unknown '{given}'; allowed: {all}")),
+        let text = match nearest(given, known) {
+            Some(name) => {
+                format!("{thing}: unknown '{given}', did you mean '{name}'? allowed: {all}")
+            }
+            None => format!("{thing}: unknown '{given}'; allowed: {all}"),
+        };
+        Self {
+            path: vec![Segment::Key(thing.to_string())],
+            ..Self::line(text)
         }
     }
 
     /// The same error, found in `place`.
     #[must_use]
     pub fn within(self, place: impl fmt::Display) -> Self {
-        Self::line(format!("{place}: {}", self.0))
+        let path = self.path;
+        Self {
+            path,
+            ..Self::line(format!("{place}: {}", self.text))
+        }
+    }
+
+    /// The same error, found in entry `index` (from 0) of the list `key` of a file.
+    #[must_use]
+    pub fn in_list(self, key: &str, index: usize) -> Self {
+        let mut error = self.within(format_args!("{key} {}", index + 1));
+        error
+            .path
+            .splice(0..0, [Segment::Key(key.to_string()), Segment::Index(index)]);
+        error
+    }
+
+    /// The same error, found in the table `key` of a file.
+    #[must_use]
+    pub fn in_table(self, key: &str) -> Self {
+        let mut error = self.within(key);
+        error.path.insert(0, Segment::Key(key.to_string()));
+        error
+    }
+
+    /// The way to the value in its file; empty if unknown.
+    #[must_use]
+    pub fn path(&self) -> &[Segment] {
+        &self.path
     }
 }
 
 impl fmt::Display for Invalid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        f.write_str(&self.text)
     }
 }
 

@@ -3,6 +3,7 @@
 //! like any other.
 
 mod geometry;
+mod locate;
 mod point;
 mod reference;
 
@@ -108,7 +109,10 @@ pub struct LevelSpec {
 
 /// One gain for all axes of a task, or one for each.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "expected a number, or a list with a number per axis"
+)]
 pub enum AxisGain {
     /// The same on every axis.
     Uniform(f64),
@@ -226,13 +230,11 @@ impl Scenario {
     /// # Errors
     /// The first line or key that cannot be used.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
-        let scenario: Self = toml::from_str(text).map_err(|error| {
-            let line = error
-                .span()
-                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            Invalid::line(format_args!("line {line}: {}", error.message()))
+        let scenario: Self = locate::parse(text)?;
+        scenario.validate().map_err(|error| {
+            let line = locate::line_of(text, error.path());
+            error.within(format_args!("line {line}"))
         })?;
-        scenario.validate()?;
         Ok(scenario)
     }
 
@@ -256,7 +258,8 @@ impl Scenario {
         let [min, max] = CYCLE_RANGE_MS;
         in_range("cycle_ms", self.cycle_ms, min, max)?;
         for (joint, (&angle, link)) in (1..).zip(self.start_deg.iter().zip(&LWR_IV.links)) {
-            let limit = link.position_limit.to_degrees();
+            // Back from radians to the number of the data sheet.
+            let limit = (link.position_limit.to_degrees() * 1e9).round() / 1e9;
             in_range(
                 format_args!("start_deg of joint {joint}"),
                 angle,
@@ -271,10 +274,10 @@ impl Scenario {
                 "1 to 7",
             ));
         }
-        for (number, level) in (1..).zip(&self.levels) {
+        for (number, level) in self.levels.iter().enumerate() {
             level
                 .validate()
-                .map_err(|error| error.within(format_args!("level {number}")))?;
+                .map_err(|error| error.in_list("level", number))?;
         }
         let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
         if rows > MAX_ROWS {
@@ -284,41 +287,21 @@ impl Scenario {
                 "1 to 7",
             ));
         }
-        for joint in 0..DOF {
-            let number = joint + 1;
-            positive(
-                format_args!("null_space.stiffness of joint {number}"),
-                self.null_space.stiffness[joint],
-                GAIN_MAX,
-            )?;
-            positive(
-                format_args!("null_space.damping of joint {number}"),
-                self.null_space.damping[joint],
-                GAIN_MAX,
-            )?;
-        }
-        positive(
-            "null_space.damping_rate",
-            self.null_space.damping_rate,
-            GAIN_MAX,
-        )?;
-        in_range(
-            "null_space.rate_gain",
-            self.null_space.rate_gain,
-            0.0,
-            GAIN_MAX,
-        )?;
-        positive("observer.gain", self.observer.gain, GAIN_MAX)?;
-        for (number, push) in (1..).zip(&self.pushes) {
+        self.null_space
+            .validate()
+            .map_err(|error| error.in_table("null_space"))?;
+        positive("gain", self.observer.gain, GAIN_MAX)
+            .map_err(|error| error.in_table("observer"))?;
+        for (number, push) in self.pushes.iter().enumerate() {
             push.validate()
-                .map_err(|error| error.within(format_args!("contact {number}")))?;
+                .map_err(|error| error.in_list("contact", number))?;
         }
-        for (number, hand) in (1..).zip(&self.hands) {
+        for (number, hand) in self.hands.iter().enumerate() {
             hand.validate()
-                .map_err(|error| error.within(format_args!("hand {number}")))?;
+                .map_err(|error| error.in_list("hand", number))?;
         }
-        for (number, limit) in (1..).zip(&self.limits) {
-            let place = |error: Invalid| error.within(format_args!("limit {number}"));
+        for (number, limit) in self.limits.iter().enumerate() {
+            let place = |error: Invalid| error.in_list("limit", number);
             PlantKind::from_name(&limit.plant).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
             if limit.dead_cycles > DEAD_CYCLES_MAX {
@@ -423,6 +406,21 @@ pub(crate) fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64;
     })
 }
 
+impl NullSpaceSpec {
+    fn validate(&self) -> Result<(), Invalid> {
+        for (joint, (&stiffness, &damping)) in (1..).zip(self.stiffness.iter().zip(&self.damping)) {
+            positive(
+                format_args!("stiffness of joint {joint}"),
+                stiffness,
+                GAIN_MAX,
+            )?;
+            positive(format_args!("damping of joint {joint}"), damping, GAIN_MAX)?;
+        }
+        positive("damping_rate", self.damping_rate, GAIN_MAX)?;
+        in_range("rate_gain", self.rate_gain, 0.0, GAIN_MAX).map(drop)
+    }
+}
+
 impl LevelSpec {
     fn validate(&self) -> Result<(), Invalid> {
         self.point.validate()?;
@@ -455,7 +453,9 @@ impl LevelSpec {
             };
             return Err(Invalid::new("reference", given, allowed));
         }
-        self.reference.validate()
+        self.reference
+            .validate()
+            .map_err(|error| error.in_table("reference"))
     }
 
     /// Where the level's point and frame are in a posture \[rad\], at rest.

@@ -176,23 +176,100 @@ fn scenario_files() {
         String::from_utf8(output.stdout).expect("text")
     };
     let mut lines = String::new();
-    for (what, from, to) in [
+    let more = "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n";
+    let rows = format!("{more}{more}[null_space]");
+    let mutations = [
+        ("not TOML", "[observer]", "[observer"),
         (
-            "more than seven rows",
-            "[null_space]",
-            "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n[[level]]\npoint = \"elbow\"\naxes = \"xy\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n[null_space]",
+            "a key twice",
+            "cycle_ms = 2.0",
+            "cycle_ms = 2.0\ncycle_ms = 1.0",
         ),
-        ("damping over the guard", "0.3, 0.03]", "0.3, 0.3]"),
+        (
+            "text for a number",
+            "duration_s = 20.0",
+            "duration_s = \"20\"",
+        ),
+        ("NaN", "duration_s = 20.0", "duration_s = nan"),
+        ("infinite", "duration_s = 20.0", "duration_s = inf"),
+        ("zero duration", "duration_s = 20.0", "duration_s = 0.0"),
+        ("cycle too long", "cycle_ms = 2.0", "cycle_ms = 30.0"),
+        ("unknown key", "duration_s", "duration"),
+        ("missing key", "robot = \"lwr_iv\"\n", ""),
+        ("unknown robot", "lwr_iv", "lwr-iv"),
+        (
+            "name with a slash",
+            "name = \"two-level\"",
+            "name = \"../two\"",
+        ),
+        (
+            "six joints",
+            "[0.0, 35.0, 0.0, -80.0, 20.0, 60.0, 0.0]",
+            "[0.0, 35.0, 0.0, -80.0, 20.0, 60.0]",
+        ),
+        ("start beyond a limit", "-80.0", "-130.0"),
+        ("unknown point", "point = \"flange\"", "point = \"flagne\""),
+        (
+            "link 9",
+            "point = \"flange\"",
+            "point = { link = 9, offset_m = [0, 0, 0] }",
+        ),
+        (
+            "offset far away",
+            "point = \"flange\"",
+            "point = { link = 7, offset_m = [0, 0, 20] }",
+        ),
+        ("half a point", "point = \"flange\"", "point = { link = 7 }"),
+        ("axes out of order", "axes = \"xyz\"", "axes = \"zyx\""),
         (
             "negative stiffness",
             "stiffness = 400.0",
             "stiffness = -400.0",
         ),
-        ("NaN", "duration_s = 20.0", "duration_s = nan"),
-        ("unknown key", "duration_s", "duration"),
+        (
+            "two gains for three axes",
+            "damping = 40.0",
+            "damping = [40.0, 40.0]",
+        ),
+        ("text for a gain", "damping = 40.0", "damping = \"much\""),
+        ("unknown motion", "kind = \"circle\"", "kind = \"circel\""),
+        ("unknown plane", "plane = \"yz\"", "plane = \"zy\""),
+        ("no period", "period_s = 6.0", "period_s = 0.0"),
+        (
+            "a swing of a position",
+            "kind = \"circle\"\nplane = \"yz\" # xy, xz, yz\nradius_m = 0.1",
+            "kind = \"swing\"\naxis = [0, 0, 1]\nangle_deg = 10.0",
+        ),
+        (
+            "orientation on a circle",
+            "point = \"flange\"",
+            "task = \"orientation\"\npoint = \"flange\"",
+        ),
+        ("more than seven rows", "[null_space]", &rows),
+        ("zero damping of a joint", "0.3, 0.03]", "0.3, 0.0]"),
+        ("damping over the guard", "0.3, 0.03]", "0.3, 0.3]"),
+        (
+            "unknown posture",
+            "posture = \"constant\"",
+            "posture = \"fixed\"",
+        ),
+        ("no observer", "gain = 50.0", "gain = 0.0"),
         ("contact without length", "to_s = 6.0", "to_s = 3.0"),
+        ("ramp too long", "ramp_s = 0.3", "ramp_s = 2.0"),
+        (
+            "force in two dimensions",
+            "force_n = [0.0, 35.0, 0.0]",
+            "force_n = [0.0, 35.0]",
+        ),
+        (
+            "unknown plant of a limit",
+            "plant = \"ideal\"",
+            "plant = \"idael\"",
+        ),
         ("unknown metric", "level1_rms_mm", "level2_rms_mm"),
-    ] {
+        ("dead time of a limit", "dead_cycles = 1", "dead_cycles = 9"),
+    ];
+    for (what, from, to) in mutations {
         let text = good.replacen(from, to, 1);
         assert_ne!(text, good, "{what}");
         let folder = tempfile::tempdir().expect("a temporary folder");

@@ -14,7 +14,7 @@ const OFFSET_MAX_M: f64 = 2.0;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "a point name or { link = 1..7, offset_m = [x, y, z] }"
+    expecting = "expected a point name or { link = 1..7, offset_m = [x, y, z] }"
 )]
 pub enum PointSpec {
     /// A named point of the arm.

@@ -88,7 +88,7 @@ impl ReferenceSpec {
             }
             Self::Swing(swing) => {
                 let norm = Vector3::from(swing.axis).norm();
-                in_range("length of axis", norm, 1e-3, 1e3)?;
+                in_range("axis length", norm, 1e-3, 1e3)?;
                 in_range("angle_deg", swing.angle_deg, -350.0, 350.0)?;
                 in_range("period_s", swing.period_s, 0.05, 3600.0)?;
                 in_range("growth_s", swing.growth_s, 0.05, 3600.0).map(drop)

@@ -1,0 +1,180 @@
+//! The commands as a user runs them: exit codes, files, and what they hold.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn hil_sim(folder: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args(arguments.split(' '))
+        .current_dir(folder)
+        .output()
+        .expect("the program runs")
+}
+
+fn json(path: &Path) -> Value {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// eq (33): with the printed sign the null space runs away and safety stops the arm.
+#[test]
+fn the_printed_sign_is_stopped_by_safety() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(
+        folder.path(),
+        "run two-level --controller as-printed --plant ideal --out o",
+    );
+    assert_eq!(output.status.code(), Some(3));
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(summary["verdict"], "stopped");
+    assert!(
+        summary["reason"]
+            .as_str()
+            .expect("a reason")
+            .contains("speed of joint")
+    );
+    assert!(summary["cycles"].as_u64().expect("cycles") < 1000);
+}
+
+#[test]
+fn a_failed_limit_is_exit_code_one_and_says_which() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(
+        folder.path(),
+        "run two-level --controller no-observer --out o",
+    );
+    assert_eq!(output.status.code(), Some(1));
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(summary["verdict"], "fail");
+    assert!(
+        summary["reason"]
+            .as_str()
+            .expect("a reason")
+            .contains("level1_rms_mm")
+    );
+}
+
+/// A metric without samples is null and is not judged.
+#[test]
+fn a_run_too_short_for_its_contacts_is_not_judged_by_them() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(
+        folder.path(),
+        "run two-level --plant ideal --duration 2 --out o",
+    );
+    assert_eq!(output.status.code(), Some(0));
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(summary["acceptance"][0]["metric"], "level1_plateau_mm");
+    assert_eq!(summary["acceptance"][0]["value"], Value::Null);
+    assert_eq!(summary["acceptance"][0]["pass"], Value::Null);
+    assert_eq!(
+        summary["levels"][0]["plateau_mm"].as_array().map(Vec::len),
+        Some(4)
+    );
+}
+
+#[test]
+fn printed_scenarios_run_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for name in ["two-level", "case-1", "case-2", "hand"] {
+        let printed = hil_sim(folder.path(), &format!("scenario {name}"));
+        assert_eq!(printed.status.code(), Some(0));
+        fs::write(folder.path().join("printed.toml"), printed.stdout).expect("a file");
+        let short = "--duration 4";
+        hil_sim(folder.path(), &format!("run {name} {short} --out built-in"));
+        hil_sim(
+            folder.path(),
+            &format!("run printed.toml {short} --out from-file"),
+        );
+        for file in ["trace.csv", "summary.json", "figures/task-error.svg"] {
+            let [one, other] = ["built-in", "from-file"]
+                .map(|run| fs::read(folder.path().join(run).join(file)).expect("a file"));
+            assert!(one == other, "{name}: {file}");
+        }
+    }
+}
+
+/// Without arguments: the three-row table, and the product passes.
+#[test]
+fn no_arguments_compare_three_controllers() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .current_dir(folder.path())
+        .output()
+        .expect("the program runs");
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8(output.stdout).expect("text");
+    for controller in ["hierarchical", "no-observer", "acceleration-level"] {
+        assert!(text.contains(&format!("\n{controller} ")), "{text}");
+    }
+    assert!(text.contains("out/two-level"));
+    for file in [
+        "summary.json",
+        "trace.csv",
+        "report.html",
+        "no-observer/summary.json",
+    ] {
+        assert!(
+            folder.path().join("out/two-level").join(file).exists(),
+            "{file}"
+        );
+    }
+}
+
+/// The whole paper: no limit exceeded, the claims that the paper's printed
+/// formulas make are refuted, and every rms figure is that of a summary.
+#[test]
+fn the_paper_report_is_complete_and_its_numbers_are_those_of_the_runs() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(folder.path(), "paper --out p");
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stdout)
+    );
+    let out = folder.path().join("p");
+    let html = fs::read_to_string(out.join("report.html")).expect("the report");
+    for number in ["04", "06", "07", "09", "10"] {
+        let figure = fs::read_to_string(out.join(format!("figures/fig{number}.svg")));
+        assert!(figure.expect("a figure").contains("<svg"));
+    }
+    let verdicts = json(&out.join("verdicts.json"));
+    let claims = verdicts.as_array().expect("claims");
+    assert!(claims.len() >= 40);
+    for claim in claims {
+        assert_ne!(claim["verdict"], "out of limit", "{claim}");
+        assert!(claim["measured"].is_number(), "{claim}");
+    }
+    let find = |id: &str| {
+        claims
+            .iter()
+            .find(|claim| claim["id"] == id)
+            .unwrap_or_else(|| panic!("no claim {id}"))
+    };
+    for id in [
+        "errata-33-sign",
+        "errata-34-coupling-5s-printed",
+        "errata-51-drift",
+    ] {
+        assert_eq!(find(id)["verdict"], "not confirmed", "{id}");
+    }
+    for (id, level) in [
+        ("6.1-circle", 0),
+        ("6.2-case-1-level1", 0),
+        ("6.2-case-1-level2", 1),
+        ("6.2-case-2-level2", 1),
+    ] {
+        let claim = find(id);
+        let run = claim["run"].as_str().expect("a run");
+        let summary = json(&out.join("runs").join(run).join("summary.json"));
+        assert_eq!(
+            claim["measured"], summary["levels"][level]["rms_mm"],
+            "{id}"
+        );
+        assert!(html.contains(run), "{id}");
+    }
+}
