@@ -38,7 +38,7 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scenario and judge it: summary.json and trace.csv in the output folder
-    Run(RunOptions),
+    Run(Box<RunOptions>),
     /// All experiments of the paper: every claim with a number and a verdict
     Paper {
         /// Output folder

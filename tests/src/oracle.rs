@@ -63,6 +63,8 @@ pub struct Basis {
     pub z: Matrix,
     /// dZ/dt.
     pub z_dot: Matrix,
+    /// Columns of J that J_w of (20) consists of.
+    pub columns: Vec<usize>,
 }
 
 /// One level of the hierarchy, the null space included.
@@ -164,6 +166,7 @@ impl Basis {
         Self {
             z: placed(&x, 1.0),
             z_dot: placed(&x_dot, 0.0),
+            columns: chosen.to_vec(),
         }
     }
 
@@ -173,6 +176,7 @@ impl Basis {
         Self {
             z: by * &self.z,
             z_dot: by * &self.z_dot + rate * &self.z,
+            columns: self.columns.clone(),
         }
     }
 }
@@ -314,7 +318,7 @@ impl Terms {
 
     /// (Z M Z^T)^-1 Z M and its rate.
     fn null_velocity_map(&self, basis: &Basis) -> (Matrix, Matrix) {
-        let Basis { z, z_dot } = basis;
+        let Basis { z, z_dot, .. } = basis;
         let mass_rate = &self.coriolis + self.coriolis.t();
         let inverse = (z * &self.mass * &z.t()).inverse();
         let half = z_dot * &self.mass * &z.t();

@@ -2,20 +2,20 @@
 //! the gain and the interval, and inside the controller it is fed with what
 //! really happened.
 
-use controller_core::joint::{JointState, JointVector};
-use controller_core::law::NullDamping;
+use controller_core::controller::{Controller, ControllerState};
+use controller_core::joint::{JointState, JointVector, Vector3};
+use controller_core::law::{NullDamping, TorqueDemand};
 use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::LWR_IV;
+use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::observer::{Observer, external_torque};
 use controller_core::task::TaskReference;
-use controller_core::trajectory::Trajectory;
 use hil_sim::plant::{Plant, PlantKind};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use std::cell::RefCell;
 use stratum_tests::config::two_level;
 use stratum_tests::golden::Worst;
-use stratum_tests::oracle::closed_loop::{ClosedLoop, TWO_LEVEL_START, circle, posture};
+use stratum_tests::oracle::closed_loop::{TWO_LEVEL_START, circle, posture};
 use stratum_tests::random::States;
 use stratum_tests::{evaluate, lwr};
 
@@ -138,27 +138,12 @@ fn starting_in_motion_gives_no_jump() {
     }
     let momentum = evaluate(&model, plant.state()).1.momentum;
     assert!(momentum.amax() > 1.0, "a moving arm: {momentum}");
-    let controller = ClosedLoop::<f64>::new(&two_level(), start, &[Trajectory::Hold]).controller;
-    let mut state = controller_core::controller::ControllerState::new();
+    let controller = Controller::new(&lwr(), &two_level()).expect("a valid configuration");
+    let mut state = ControllerState::new();
     let mut largest = 0.0f64;
     for cycle in 0..50 {
-        let JointState { q, dq } = *plant.state();
-        let x = plant
-            .model()
-            .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
-            .0;
-        let step = controller.step(
-            &mut state,
-            &Measurement {
-                q,
-                dq,
-                interval_s: 0.002,
-            },
-            &Reference {
-                tasks: [TaskReference::rest(x)].into_iter().collect(),
-                posture: q,
-            },
-        );
+        let reference = towards(TaskReference::rest(flange(&plant)), plant.state().q);
+        let step = controller.step(&mut state, &measured(&plant, 0.002), &reference);
         assert!(step.status.fault.is_none(), "{:?}", step.status);
         if cycle == 0 {
             assert_eq!(step.residual, JointVector::zeros());
@@ -171,39 +156,62 @@ fn starting_in_motion_gives_no_jump() {
         50.0 * momentum.amax()
     );
     // C^T dq - g is held over 2 ms while the arm brakes hard.
-    assert!(largest < 0.5, "{largest}");
+    assert!(largest < 0.1, "{largest}");
 }
 
-/// Twenty cycles towards a reference 0.3 m away saturate joints. The observer
-/// knows the torque that was applied; with the one demanded r would show the
-/// difference, hundreds of Nm.
+/// An arm whose shoulder may only give 90 % of the torque that holds it: every
+/// cycle is cut, by ever more as it sinks. The observer knows the torque that was
+/// applied; with the one demanded r would show the difference.
 #[test]
 fn saturated_torque_is_not_taken_for_an_external_one() {
-    let far = Trajectory::Move {
-        by: [0.0, 0.2, 0.1].into(),
-        duration_s: 0.1,
-    };
-    let mut closed = ClosedLoop::<f64>::new(&two_level(), posture(TWO_LEVEL_START), &[far]);
-    let (mut saturated, mut largest, mut excess) = (0, 0.0f64, 0.0f64);
-    for _ in 0..20 {
+    let start = posture(TWO_LEVEL_START);
+    let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
+    let mut arm = LWR_IV;
+    arm.links[1].torque_limit = 0.9 * evaluate(&lwr(), plant.state()).1.gravity[1].abs();
+    let model = ArmModel::new(&arm).expect("a weak arm");
+    let controller = Controller::new(&model, &two_level()).expect("a valid configuration");
+    let mut state = ControllerState::new();
+    let x = flange(&plant);
+    let (mut largest, mut excess) = (0.0f64, 0.0f64);
+    for _ in 0..100 {
         let mut demand = JointVector::zeros();
-        let seen = closed.step_with(
+        let step = controller.step_with(
+            &mut state,
+            &measured(&plant, 0.002),
+            &towards(TaskReference::rest(x), start),
             |cycle| {
-                let torque = controller_core::law::TorqueDemand::hierarchical(cycle);
+                let torque = TorqueDemand::hierarchical(cycle);
                 demand = torque.0;
                 torque
             },
-            |_, _, _| JointVector::zeros(),
         );
-        assert!(seen.step.status.fault.is_none(), "{:?}", seen.step.status);
-        saturated += u32::from(seen.step.status.saturated.any());
-        excess = excess.max((demand - seen.step.torque).amax());
-        largest = largest.max(seen.step.residual.amax());
+        assert!(step.status.fault.is_none(), "{:?}", step.status);
+        assert!(step.status.saturated.contains(1));
+        excess = excess.max((demand - step.torque).amax());
+        largest = largest.max(step.residual.amax());
+        plant.advance(0.0, &step.torque, |_, _, _| JointVector::zeros());
     }
-    println!("{saturated} cycles cut by up to {excess:.0} Nm, residual {largest:.2} Nm");
-    assert!(saturated >= 5 && excess > 100.0);
-    // What C^T dq - g changes within a cycle at such accelerations.
-    assert!(largest < 2.0, "{largest}");
+    println!("cut by up to {excess:.0} Nm, residual {largest:.4} Nm");
+    assert!(excess > 5.0, "{excess}");
+    // What C^T dq - g changes within a cycle.
+    assert!(largest < 0.01 * excess, "{largest}");
+}
+
+fn flange(plant: &Plant) -> Vector3<f64> {
+    let offset = [0.0, 0.0, 0.078].into();
+    plant.model().point(plant.state(), 7, &offset).0
+}
+
+fn measured(plant: &Plant, interval_s: f64) -> Measurement<f64> {
+    let JointState { q, dq } = *plant.state();
+    Measurement { q, dq, interval_s }
+}
+
+fn towards(task: TaskReference<f64>, posture: JointVector<f64>) -> Reference<f64> {
+    Reference {
+        tasks: [task].into_iter().collect(),
+        posture,
+    }
 }
 
 /// Runs the fast circle with plant steps of 0.5 ms and controller intervals of 2
@@ -213,31 +221,17 @@ fn with_varying_intervals(push: f64, claimed: impl Fn(f64) -> f64) -> f64 {
     const STEP: f64 = 0.0005;
     let start = posture(TWO_LEVEL_START);
     let motion = circle(0.1, 3.0);
-    let controller = ClosedLoop::<f64>::new(&two_level(), start, &[motion]).controller;
-    let mut state = controller_core::controller::ControllerState::new();
+    let controller = Controller::new(&lwr(), &two_level()).expect("a valid configuration");
+    let mut state = ControllerState::new();
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, STEP, 1);
-    let origin = plant
-        .model()
-        .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
-        .0;
+    let origin = flange(&plant);
     let mut random = States::new(8);
     let (mut t, mut interval, mut worst) = (0.0, 0.002, 0.0f64);
     let mut expected = JointVector::zeros();
     let force = [0.0, push, 0.0].into();
     while t < 4.0 {
-        let JointState { q, dq } = *plant.state();
-        let step = controller.step(
-            &mut state,
-            &Measurement {
-                q,
-                dq,
-                interval_s: claimed(interval),
-            },
-            &Reference {
-                tasks: [motion.sample(&origin, t)].into_iter().collect(),
-                posture: start,
-            },
-        );
+        let reference = towards(motion.sample(&origin, t), start);
+        let step = controller.step(&mut state, &measured(&plant, claimed(interval)), &reference);
         assert!(step.status.fault.is_none(), "{:?}", step.status);
         worst = worst.max((step.residual - expected).amax());
         let count = 2 + (4.5 * (random.signed() + 1.0)) as u32;
@@ -285,31 +279,17 @@ fn dead_time_is_known_to_the_observer() {
         config.null_space.damping = NullDamping::Inertia(10.0);
         config.dead_cycles = dead_cycles;
         let motion = circle(0.1, 2.0);
-        let controller = ClosedLoop::new(&config, start, &[motion]).controller;
-        let mut state = controller_core::controller::ControllerState::new();
+        let controller = Controller::new(&lwr(), &config).expect("a valid configuration");
+        let mut state = ControllerState::new();
         let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
-        let origin = plant
-            .model()
-            .point(plant.state(), 7, &[0.0, 0.0, 0.078].into())
-            .0;
+        let origin = flange(&plant);
         let gravity = evaluate(&lwr(), plant.state()).1.gravity;
         let mut wire = [gravity; 2];
         let mut largest = 0.0f64;
         for cycle in 0..1500 {
             let t = f64::from(cycle) * 0.002;
-            let JointState { q, dq } = *plant.state();
-            let step = controller.step(
-                &mut state,
-                &Measurement {
-                    q,
-                    dq,
-                    interval_s: 0.002,
-                },
-                &Reference {
-                    tasks: [motion.sample(&origin, t)].into_iter().collect(),
-                    posture: start,
-                },
-            );
+            let reference = towards(motion.sample(&origin, t), start);
+            let step = controller.step(&mut state, &measured(&plant, 0.002), &reference);
             assert!(step.status.is_clear(), "{:?}", step.status);
             largest = largest.max(step.residual.amax());
             plant.advance(t, &wire[1], |_, _, _| JointVector::zeros());

@@ -6,9 +6,9 @@
 //! three cycle times; the rises must shrink with the cycle.
 //!
 //! - V_i (43), one per level, gains diagonal, x~ and dx~ the errors of the level:
-//!   x~^T (K_d / K_p + K_p / K_d + 1 / K_d) x~ / 2 + x~^T K_p^-1 dx~
-//!   + dx~^T (1 + 1 / K_p) / K_d dx~ / 2, whose derivative along
-//!   ddx~ + K_d dx~ + K_p x~ = 0 is -x~^T x~ - dx~^T dx~.
+//!   `x~^T (K_d / K_p + K_p / K_d + 1 / K_d) x~ / 2 + x~^T K_p^-1 dx~
+//!   + dx~^T (1 + 1 / K_p) / K_d dx~ / 2`, whose derivative along
+//!   `ddx~ + K_d dx~ + K_p x~ = 0` is `-x~^T x~ - dx~^T dx~`.
 //! - V_1 (41): the same of the first level plus c r~^T K_I^-1 r~ / 2 with r~ = r +
 //!   tau_ext, for a constant tau_ext. c is chosen large enough for the cross terms.
 //! - V_l (46): n^T M n / 2 + q~*^T K_q q~* / 2 with n the null-space velocity and

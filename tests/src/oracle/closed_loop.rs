@@ -5,7 +5,7 @@ use controller_core::controller::{Controller, ControllerState, Step};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::law::{Cycle, TorqueDemand};
 use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::model::{ArmModel, ArmParameters, LWR_IV};
 use controller_core::real::Real;
 use controller_core::task::{TaskKind, TaskReference};
 use controller_core::trajectory::Trajectory;
@@ -13,6 +13,9 @@ use hil_sim::plant::{Plant, PlantKind, PlantModel};
 
 /// The posture \[deg\] from which the two-level circle starts.
 pub const TWO_LEVEL_START: [f64; 7] = [0.0, 35.0, 0.0, -80.0, 20.0, 60.0, 0.0];
+
+/// The posture \[deg\] from which the three-level motions start.
+pub const CASE_START: [f64; 7] = [10.0, 30.0, 5.0, -85.0, 25.0, 50.0, 0.0];
 
 /// A posture in rad.
 #[must_use]
@@ -71,10 +74,21 @@ impl<T: Real> ClosedLoop<T> {
         start: JointVector<f64>,
         motions: &[Trajectory<f64>],
     ) -> Self {
-        let model = ArmModel::new(&LWR_IV).expect("the built-in arm is valid");
+        Self::with_arm(&LWR_IV, config, start, motions)
+    }
+
+    /// The same with another arm.
+    #[must_use]
+    pub fn with_arm(
+        arm: &ArmParameters,
+        config: &ControllerConfig<T>,
+        start: JointVector<f64>,
+        motions: &[Trajectory<f64>],
+    ) -> Self {
+        let model = ArmModel::new(arm).expect("a valid arm");
         let controller = Controller::new(&model, config).expect("a valid configuration");
         let cycle_s = config.cycle_s.to_f64();
-        let plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, cycle_s, 1);
+        let plant = Plant::new(PlantKind::Ideal, arm, start, cycle_s, 1);
         let origins = config.tasks.iter().map(|task| {
             let point = task.point.cast::<f64>();
             plant
@@ -98,7 +112,8 @@ impl<T: Real> ClosedLoop<T> {
     /// Starts elsewhere \[rad\] at rest; references and q_d stay.
     #[must_use]
     pub fn from(mut self, start: JointVector<f64>) -> Self {
-        self.plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, self.cycle_s, 1);
+        let arm = self.controller.model().parameters();
+        self.plant = Plant::new(PlantKind::Ideal, arm, start, self.cycle_s, 1);
         self
     }
 

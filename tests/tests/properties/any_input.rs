@@ -134,10 +134,10 @@ fn anything_in_good_torque_out<T: Real>() {
                     assert!(believable(&measurement), "{measurement:?}");
                 }
             }
-            let numbers = (reference.tasks.iter())
+            let mut numbers = (reference.tasks.iter())
                 .flat_map(|task| task.x.iter().chain(&task.dx).chain(&task.ddx))
                 .chain(&reference.posture);
-            let moderate = numbers.fold(true, |all, x| all && x.to_f64().abs() < 1e6);
+            let moderate = numbers.all(|x| x.to_f64().abs() < 1e6);
             let oriented = reference.tasks.iter().all(|task| {
                 let norm = task.orientation.map(T::to_f64).norm();
                 (0.501..1.999).contains(&norm)
