@@ -37,7 +37,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a scenario and judge it: summary.json and trace.csv in the output folder
+    /// Run a scenario and judge it: report, summary, trace and figures in the output folder
     Run(Box<RunOptions>),
     /// All experiments of the paper: every claim with a number and a verdict
     Paper {

@@ -223,7 +223,7 @@ impl Experiment {
         Summary {
             scenario: scenario.name.clone(),
             controller: self.controller.name(),
-            plant: Named::name(self.plant),
+            plant: self.plant.name(),
             contacts: self.contacts,
             seed: self.seed,
             cycle_ms: scenario.cycle_ms,

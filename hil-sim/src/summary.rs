@@ -60,7 +60,7 @@ pub struct Acceptance {
 #[derive(Clone, Debug, Serialize)]
 #[expect(
     missing_docs,
-    reason = "the fields are those of the file, described in docs/architecture.md"
+    reason = "the fields are those of the file, described in docs/files.md"
 )]
 pub struct Summary {
     pub scenario: String,

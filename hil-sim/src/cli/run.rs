@@ -259,7 +259,7 @@ fn heading(experiment: &Experiment) -> String {
     format!(
         "{}: {} plant, contacts {}, seed {}, {} s in cycles of {} ms\n\n",
         scenario.name,
-        Named::name(experiment.plant),
+        experiment.plant.name(),
         Switch(experiment.contacts).name(),
         experiment.seed,
         scenario.duration_s,

@@ -84,7 +84,7 @@ impl Family {
         format!(
             "{}-{}-{contacts}-{}{stiffness}-seed{seed}",
             self.scenario,
-            Named::name(self.plant),
+            self.plant.name(),
             self.controller.name()
         )
     }

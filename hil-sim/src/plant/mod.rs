@@ -51,17 +51,6 @@ pub enum PlantKind {
     Realistic,
 }
 
-impl PlantKind {
-    /// Name as on the command line and in scenario files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ideal => "ideal",
-            Self::Realistic => "realistic",
-        }
-    }
-}
-
 /// A simulated arm and its state.
 #[derive(Clone, Debug)]
 pub struct Plant {
