@@ -50,6 +50,11 @@ pub struct Step<T: Real> {
     pub torque: JointVector<T>,
     /// r \[Nm\], tends to -tau_ext; zero while a fault is latched.
     pub residual: JointVector<T>,
+    /// g(q) \[Nm\], contained in the torque: what a robot that compensates
+    /// gravity itself must not be sent. While a fault is latched the torque itself.
+    pub gravity: JointVector<T>,
+    /// C dq \[Nm\], contained in the torque; zero while a fault is latched.
+    pub coriolis: JointVector<T>,
     /// What limited or degraded the cycle.
     pub status: Status,
 }
@@ -73,6 +78,14 @@ impl<T: Real> ControllerState<T> {
         self.fault
     }
 
+    /// Tells the observer that `torque` \[Nm\] has acted on the joints since the
+    /// last cycle instead of the one it assumes: the torque of that cycle, or
+    /// with dead time of so many cycles before. For links that round, scale or
+    /// lose torques; to be called before the next cycle.
+    pub fn applied(&mut self, torque: &JointVector<T>) {
+        self.observer.correct(torque);
+    }
+
     /// Clears a latched fault. The observer and an integrated posture start anew.
     pub fn reset(&mut self) {
         *self = Self {
@@ -86,6 +99,8 @@ impl<T: Real> ControllerState<T> {
         Step {
             torque: self.hold,
             residual: zeros(),
+            gravity: self.hold,
+            coriolis: zeros(),
             status: Status {
                 fault: Some(fault),
                 ..Status::default()
@@ -234,6 +249,8 @@ impl<T: Real> Controller<T> {
         Ok(Step {
             torque,
             residual,
+            gravity: dynamics.gravity,
+            coriolis: dynamics.coriolis,
             status: Status {
                 fault: None,
                 saturated,

@@ -21,7 +21,8 @@
 //! - [`hierarchy`]: all priorities from one factorisation; [`observer`]: the
 //!   residual (30); [`law`]: the torque demanded; [`limits`]: the torque that
 //!   may reach the motors. The control law itself.
-//! - [`measurement`]: what enters a cycle and when it is believed; [`fault`]:
+//! - [`measurement`]: what enters a cycle and when it is believed; [`velocity`]:
+//!   joint speeds where the robot reports positions only; [`fault`]:
 //!   faults and limit flags; [`config`] and [`damping`]: what a controller is
 //!   made of, validated once; [`record`]: the last cycles, in the caller's
 //!   storage; [`mod@controller`]: the cycle. For whoever links the core into a
@@ -56,6 +57,7 @@ pub mod record;
 mod spatial;
 pub mod task;
 pub mod trajectory;
+pub mod velocity;
 
 /// The example of the README is a test.
 #[cfg(doctest)]

@@ -26,6 +26,8 @@ pub struct Observer<T: Real> {
     pub momentum: JointVector<T>,
     /// u_(k-1) = tau + C^T dq - g \[Nm\], tau as it was applied.
     pub input: JointVector<T>,
+    /// tau in that input \[Nm\].
+    pub torque: JointVector<T>,
     /// r_(k-1) \[Nm\].
     pub residual: JointVector<T>,
     /// False until the first momentum is known.
@@ -39,6 +41,7 @@ impl<T: Real> Observer<T> {
         Self {
             momentum: zeros(),
             input: zeros(),
+            torque: zeros(),
             residual: zeros(),
             started: false,
         }
@@ -78,6 +81,13 @@ impl<T: Real> Observer<T> {
         torque: &JointVector<T>,
     ) {
         self.input = torque + dynamics.coriolis_transpose_times(&state.dq) - dynamics.gravity;
+        self.torque = *torque;
+    }
+
+    /// Replaces the torque \[Nm\] in the input kept by [`Observer::apply`].
+    pub fn correct(&mut self, torque: &JointVector<T>) {
+        self.input += torque - self.torque;
+        self.torque = *torque;
     }
 }
 
@@ -138,4 +148,33 @@ impl<T: Real> Default for Observer<T> {
 #[must_use]
 pub fn external_torque<T: Real>(residual: &JointVector<T>) -> JointVector<T> {
     -residual
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::Kinematics;
+    use crate::model::{ArmModel, LWR_IV};
+
+    #[test]
+    fn a_corrected_torque_counts_like_an_applied_one() {
+        let model = ArmModel::new(&LWR_IV).expect("the built-in arm");
+        let state = JointState {
+            q: JointVector::from([0.1, 0.6, -0.2, -1.4, 0.3, 1.0, 0.4]),
+            dq: JointVector::from([0.3, -0.2, 0.1, 0.4, -0.5, 0.2, 1.0]),
+        };
+        let dynamics = Dynamics::new(&model, &Kinematics::new(&model, &state), &state);
+        let (assumed, real) = (JointVector::repeat(3.0), JointVector::repeat(-2.5));
+        let mut corrected = Observer::new();
+        corrected.apply(&dynamics, &state, &assumed);
+        corrected.correct(&real);
+        let mut direct = Observer::new();
+        direct.apply(&dynamics, &state, &real);
+        // Rounding of a sum of torques of some ten Nm.
+        assert!((corrected.input - direct.input).amax() < 1e-13);
+        assert_eq!(corrected.torque, direct.torque);
+        // Nothing changes when the assumption was right.
+        corrected.correct(&real);
+        assert_eq!(corrected.torque, direct.torque);
+    }
 }

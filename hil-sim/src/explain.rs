@@ -39,6 +39,7 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
                 input: previous.input_prev.into(),
                 residual: previous.residual_prev.into(),
                 started: true,
+                ..Observer::new()
             };
             observer.update(&previous.gain.into(), previous.h, &dynamics.momentum)
         }

@@ -1,46 +1,31 @@
 //! Measurement of the realistic plant: encoder counts, and a velocity made from
-//! their difference by one low-pass pole.
+//! them by the core's estimator, as on a robot that reports positions only.
 
 use controller_core::joint::{JointState, JointVector};
-use controller_core::real::Real;
+use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
 
 /// Encoder step \[rad\].
 pub const ENCODER_STEP: f64 = 2e-5;
-
-/// Corner frequency of the velocity filter \[Hz\].
-pub const VELOCITY_CORNER: f64 = 60.0;
 
 /// Encoders and velocity filter of all joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
     cycle_s: f64,
-    /// Share of the new difference quotient in the filtered velocity.
-    pole: f64,
-    last: JointState<f64>,
+    velocity: VelocityEstimator<f64>,
 }
 
 impl Sensor {
     /// Sensor of an arm at rest at `q0` \[rad\], read every `cycle_s` \[s\].
     #[must_use]
     pub fn new(q0: &JointVector<f64>, cycle_s: f64) -> Self {
-        let decay = core::f64::consts::TAU * VELOCITY_CORNER * cycle_s;
-        Self {
-            cycle_s,
-            pole: 1.0 - decay.exp_negative(),
-            last: JointState {
-                q: q0.map(quantised),
-                dq: JointVector::zeros(),
-            },
-        }
+        let mut velocity = VelocityEstimator::new(CORNER_HZ);
+        velocity.update(&q0.map(quantised), cycle_s);
+        Self { cycle_s, velocity }
     }
 
     /// Reading of an arm at `q` \[rad\], one cycle after the last reading.
     pub fn measure(&mut self, q: &JointVector<f64>) -> JointState<f64> {
-        let q = q.map(quantised);
-        let difference = (q - self.last.q) / self.cycle_s;
-        let dq = self.last.dq + (difference - self.last.dq) * self.pole;
-        self.last = JointState { q, dq };
-        self.last
+        self.velocity.update(&q.map(quantised), self.cycle_s)
     }
 }
 
