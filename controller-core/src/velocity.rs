@@ -83,7 +83,7 @@ mod tests {
         // The start has decayed by e^(-2 pi 60): what is left is rounding of q over h.
         assert!((speed - 0.7).abs() < 1e-12, "{speed}");
         assert!((late - ramp.delay_s(h)).abs() < 1e-9, "{late}");
-        assert!((ramp.delay_s(h) - 2.776e-3).abs() < 1e-6);
+        assert!((ramp.delay_s(h) - 2.777e-3).abs() < 1e-6);
     }
 
     #[test]
