@@ -157,6 +157,20 @@ impl<T: Real> Controller<T> {
         self.fastest_mode
     }
 
+    /// The reference that keeps the arm in the posture `q` \[rad\]: every level
+    /// where it is, q_d = q. What motions start from.
+    #[must_use]
+    pub fn rest(&self, q: &JointVector<T>) -> Reference<T> {
+        let (q, dq) = (*q, zeros());
+        let kinematics = Kinematics::new(&self.model, &JointState { q, dq });
+        Reference {
+            tasks: (self.tasks.iter())
+                .map(|task| task.place(&kinematics))
+                .collect(),
+            posture: q,
+        }
+    }
+
     /// One cycle. Never fails and never panics: with a measurement or reference
     /// that cannot be true it latches a fault and holds the arm by the gravity
     /// torque of the last plausible posture (zero torque if there was none).

@@ -107,6 +107,20 @@ impl<T: Real> Task<T> {
     }
 }
 
+impl<T: Real> Task<T> {
+    /// The reference that keeps the task's point, or its link's orientation, where it is.
+    #[must_use]
+    pub fn place(&self, kinematics: &Kinematics<T>) -> TaskReference<T> {
+        match self.kind {
+            TaskKind::Position => TaskReference::rest(kinematics.point(&self.point).x),
+            TaskKind::Orientation => {
+                let link = kinematics.link(self.point.link);
+                TaskReference::facing(orientation::of_rotation(&link.rotation))
+            }
+        }
+    }
+}
+
 /// Desired motion of one level, base-plate frame. Axes that the task does not
 /// control have no influence, but must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
