@@ -1,7 +1,7 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
 mod run;
-mod usage;
+pub mod usage;
 
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::PathBuf;
@@ -66,7 +66,7 @@ const COMMANDS: &[&str] = &["run", "paper", "scenario", "explain"];
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => return usage::report(&error),
+        Err(error) => return usage::report("hil-sim", COMMANDS, &error),
     };
     let outcome = match cli.command {
         None => run::comparison(),

@@ -6,6 +6,7 @@ mod geometry;
 mod locate;
 mod point;
 mod reference;
+mod session;
 
 use std::path::Path;
 
@@ -26,6 +27,7 @@ use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantModel};
 pub use geometry::orientation;
 pub use point::PointSpec;
 pub use reference::ReferenceSpec;
+pub use session::ScenarioSource;
 
 /// The scenarios that come with the program: name and TOML text.
 pub const BUILT_IN: &[(&str, &str)] = &[
