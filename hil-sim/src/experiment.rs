@@ -21,7 +21,7 @@ use crate::scenario::Scenario;
 use crate::summary::{self, Summary, Verdict};
 
 pub use level::LevelInstant;
-pub(crate) use level::Places;
+pub(crate) use level::{Places, angular_velocity};
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]

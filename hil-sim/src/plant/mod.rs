@@ -31,12 +31,12 @@ use controller_core::model::ArmParameters;
 
 use drive::Drive;
 use integrate::Resistance;
-use options::DeadTime;
 
 pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
 pub use mismatch::mismatched;
 pub use model::PlantModel;
+pub(crate) use options::DeadTime;
 pub use noise::Rng;
 pub use options::{DEAD_CYCLES_MAX, PlantOptions};
 pub use sensor::Sensor;

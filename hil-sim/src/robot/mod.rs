@@ -21,7 +21,9 @@
 //! as the binary32 numbers that the client saw. From time 0 on contacts act and
 //! figures count; losing command state does not stop that clock.
 
+mod driving;
 mod figures;
+mod model;
 mod options;
 mod rating;
 
