@@ -214,8 +214,8 @@ fn saturated_joints_are_flagged_and_cut_with_their_sign() {
     );
 }
 
-/// Constant: q_d is that of every reference. Integrated: that of the first, then
-/// the trapezoidal integral of w over the measured intervals, from the next
+/// Constant: q_d is that of every reference. Integrated, eq (51): that of the first,
+/// then the trapezoidal integral of w over the measured intervals, from the next
 /// reference again after a reset.
 #[test]
 fn the_desired_posture_is_that_of_its_mode() {

@@ -55,6 +55,9 @@ fn compare(path: &str, given: &Value, expected: &Value, worst: &mut f64) {
     }
 }
 
+/// Covers eq (7), eq (8), eq (9), eq (12), eq (13), eq (14) by the acceleration-level
+/// controllers, eq (30) by the observer step, eq (17), eq (18), eq (32), eq (33), eq (34)
+/// by the others, the printed law among them.
 #[test]
 fn every_quantity_agrees_with_the_explicit_formulas() {
     let golden: Value = serde_json::from_str(&file("laws.json")).expect("laws.json");

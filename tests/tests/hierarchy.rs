@@ -77,7 +77,7 @@ fn the_splits_cover_every_number_of_rows_and_are_levels_of_the_core() {
     });
 }
 
-/// Eqs (17)-(21), level by level.
+/// Level by level. Covers eq (17), eq (18), eq (19), eq (21).
 #[test]
 fn projected_jacobians_inverses_and_inertias_are_the_printed_ones() {
     let mut worst = [
@@ -106,7 +106,8 @@ fn projected_jacobians_inverses_and_inertias_are_the_printed_ones() {
 }
 
 /// Z of eq (20) and the core's basis span the same space: the projectors and the
-/// null-space motion agree, and each basis is a combination of the other.
+/// null-space motion agree, and each basis is a combination of the other. Z^T v
+/// takes Jbar_l of eq (21).
 #[test]
 fn the_null_space_is_that_of_the_printed_basis() {
     let mut worst = [
@@ -163,7 +164,8 @@ fn the_motion_splits_as_printed_with_the_coupling() {
     }
 }
 
-/// Eq (34) with the coupling of (8) and the plus of (33) is the core's law.
+/// Eq (34) with the task accelerations of eq (32), the coupling of eq (8) and
+/// eq (33) with the plus is the core's law.
 #[test]
 fn the_torque_is_that_of_the_corrected_printed_law() {
     let mut worst = Worst::new("torque");

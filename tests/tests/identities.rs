@@ -23,6 +23,7 @@ fn moved(state: &JointState<f64>, direction: &JointVector<f64>, by: f64) -> Join
 
 /// M from unit accelerations of the plant: ddq of a unit torque is a column of
 /// M^-1. Independent algorithm, so only conditioning (1.6e4) limits agreement.
+/// Covers M of eq (6).
 #[test]
 fn mass_matrix_inverts_the_plants_response_to_unit_torques() {
     let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
@@ -48,6 +49,7 @@ fn mass_matrix_inverts_the_plants_response_to_unit_torques() {
     }
 }
 
+/// dM/dt = C + C^T, which eq (30) takes for granted.
 #[test]
 fn mass_matrix_rate_is_coriolis_plus_its_transpose() {
     let model = lwr();
@@ -70,7 +72,7 @@ fn mass_matrix_rate_is_coriolis_plus_its_transpose() {
 }
 
 /// C_ij = sum_k (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) dq_k / 2, entry by entry:
-/// the factorisation of the paper and no other.
+/// the factorisation of the paper and no other. Covers C of eq (6).
 #[test]
 fn coriolis_matrix_is_the_christoffel_one() {
     let model = lwr();
@@ -100,6 +102,7 @@ fn coriolis_matrix_is_the_christoffel_one() {
     }
 }
 
+/// Covers g of eq (6).
 #[test]
 fn gravity_is_the_gradient_of_the_plants_potential_energy() {
     let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
@@ -117,7 +120,7 @@ fn gravity_is_the_gradient_of_the_plants_potential_energy() {
     }
 }
 
-/// The whole equation of motion: the torque that (6) gives for an acceleration
+/// The whole equation of motion: the torque that eq (6) gives for an acceleration
 /// makes the plant accelerate just so.
 #[test]
 fn plant_follows_the_cores_equation_of_motion() {
@@ -137,6 +140,7 @@ fn plant_follows_the_cores_equation_of_motion() {
     }
 }
 
+/// x, dx = J dq and dJ/dt of the tasks. Covers eq (1), eq (2).
 #[test]
 fn points_jacobians_and_their_rates_agree_with_the_plant_and_with_differences() {
     let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));

@@ -21,8 +21,9 @@ use stratum_tests::{evaluate, lwr};
 
 /// Eq (30): with a constant disturbance F and a known input that jumps at every
 /// instant, r = F (1 - e^(-K_I t)) at the instants, for any gains and any
-/// intervals. The momentum is simulated exactly; its rounding, 1e-16 |p| / h, is
-/// what the difference may show, beside that of sums of |u| and |F|.
+/// intervals: eq (31) solved, and the decay of r~ = r + tau_ext, eq (40). The
+/// momentum is simulated exactly; its rounding, 1e-16 |p| / h, is what the
+/// difference may show, beside that of sums of |u| and |F|.
 #[test]
 fn the_step_response_is_the_exponential_at_every_instant_for_any_gain() {
     let config = ProptestConfig {
@@ -66,7 +67,7 @@ fn the_step_response_is_the_exponential_at_every_instant_for_any_gain() {
     worst.into_inner().within(10.0);
 }
 
-/// The continuous equation dr/dt = K_I (d(t) - r) for a disturbance that grows
+/// Eq (31), dr/dt = K_I (d(t) - r), for a disturbance that grows
 /// and swings, against the discrete form: the mean of d over each cycle is
 /// exact, so halving the cycle divides the error by four.
 #[test]
@@ -97,8 +98,8 @@ fn a_changing_disturbance_is_followed_to_second_order() {
     assert!(coarse < 4e-4, "{coarse}");
 }
 
-/// K_I h = 3: the explicit Euler form of (30) multiplies its error by -2 every
-/// cycle, the exact form settles within a few.
+/// K_I h = 3: the explicit Euler form of eq (30) multiplies its error by -2 every
+/// cycle, the exact form settles within a few. Covers the sign of eq (31).
 #[test]
 fn it_is_stable_where_the_euler_form_is_not() {
     let (interval, gain, force) = (0.002, 1500.0, 7.0f64);
@@ -124,7 +125,7 @@ fn it_is_stable_where_the_euler_form_is_not() {
 }
 
 /// Starts at full speed: the first residual is exactly zero and stays at
-/// rounding while nothing pushes. Starting from p = 0 as (30) is printed the
+/// rounding while nothing pushes. Starting from p = 0 as eq (30) is printed the
 /// residual would begin with K_I p.
 #[test]
 fn starting_in_motion_gives_no_jump() {

@@ -88,8 +88,8 @@ fn sample((split, state, seed): &Case, model: &ArmModel<f64>, residual: f64) -> 
     Sample::new(model, &config, *state, &wish)
 }
 
-/// (22)-(25): eq (22) and (23) say which products of Jbar and Jbar^# vanish, eq
-/// (24) and (25) the same of the null space. Each error is divided by the sizes
+/// Eq (22), eq (23), eq (24), eq (25): which products of Jbar and Jbar^# vanish, the
+/// null space included. Each error is divided by the sizes
 /// of its factors in whitened coordinates, times ||L|| ||L^-1|| = 126 for the
 /// way back: rounding is left.
 #[test]
@@ -204,7 +204,7 @@ fn the_projectors_project() {
     }
 }
 
-/// Eqs (33), (34): with any basis T(t) Z of the null space the printed law gives
+/// Eq (33), eq (34): with any basis T(t) Z of the null space the printed law gives
 /// the same torque, and it is the core's. K_l,d = Z D Z^T is what makes it so.
 /// The error is divided by the conditioning of what the formulas invert.
 #[test]
@@ -266,7 +266,7 @@ fn the_null_space_torque_is_that_of_any_rotated_basis() {
     worst.into_inner().within(1e-15);
 }
 
-/// Eqs (8), (12), (26): the plant, an independent algorithm, accelerates every
+/// Eq (8), eq (12), eq (26): the plant, an independent algorithm, accelerates every
 /// resolvable row exactly as wanted, whatever the rows above do, near
 /// singularities too. Errors are relative to the largest joint acceleration:
 /// rounding of sums of seven, magnified by ||L|| ||L^-1|| = 126.
@@ -343,8 +343,9 @@ fn the_plants_points_accelerate_as_the_gains_say() {
     worst.into_inner().within(1.0);
 }
 
-/// Eq (33) with the plus: the plant's null-space motion obeys
-/// Lambda dv/dt + mu v + Z D Z^T v = Z (K_q q~ - tau_ext) while pushed.
+/// Eq (33) with the plus, which is eq (39) while pushed: the plant's null-space
+/// motion obeys
+/// Lambda dv/dt + mu v + Z D Z^T v = Z (K_q q~ - tau_ext).
 #[test]
 fn the_plants_null_space_is_the_wanted_spring_and_damper() {
     let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));

@@ -78,8 +78,8 @@ fn erratum_1_the_stiffness_of_eq_33_needs_a_plus() {
     assert!(away < 1e-4 && error < 1e-6, "{away} {error}");
 }
 
-/// Erratum 1, eq (39), eq (45), eq (47): where the tasks rest (w = 0) the storage
-/// V = v^T Lambda_l v / 2 + q~^T K_q q~ / 2 loses exactly n^T D n with the plus.
+/// Erratum 1, eq (39), eq (45), eq (46), eq (47): where the tasks rest (w = 0) the
+/// storage V = v^T Lambda_l v / 2 + q~^T K_q q~ / 2 loses exactly n^T D n with the plus.
 /// As printed it gains -2 n^T K_q q~ besides, which has either sign: no storage
 /// function. Rates are central differences along the plant's motion.
 #[test]
