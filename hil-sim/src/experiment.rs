@@ -4,7 +4,7 @@ mod level;
 
 use std::io;
 
-use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::controller::{Controller, ControllerState};
 use controller_core::fault::{Fault, FaultKind};
 use controller_core::joint::{JointState, JointVector};
 use controller_core::law::Cycle;
@@ -21,7 +21,7 @@ use crate::scenario::Scenario;
 use crate::summary::{self, Summary, Verdict};
 
 pub use level::LevelInstant;
-use level::Places;
+pub(crate) use level::{Places, angular_velocity};
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]
@@ -48,13 +48,19 @@ pub struct Instant<'a> {
     pub t_s: f64,
     /// True joint state.
     pub state: &'a JointState<f64>,
-    /// Result of the control cycle.
-    pub step: &'a Step<f64>,
+    /// Torque that acts from now on for a cycle \[Nm\].
+    pub torque: &'a JointVector<f64>,
+    /// r \[Nm\].
+    pub residual: &'a JointVector<f64>,
+    /// Whether a torque was cut to its limit.
+    pub saturated: bool,
+    /// Whether a task row could not be resolved.
+    pub rank: bool,
     /// True tau_ext of (6) \[Nm\]: minus the joint torque of the contacts.
     pub tau_ext: &'a JointVector<f64>,
     /// Largest force of a hand \[N\].
     pub hand_force_n: f64,
-    /// |R_kk| per task row.
+    /// |R_kk| per task row; empty where it is not known.
     pub conditioning: &'a [f64],
     /// Every level, highest priority first.
     pub levels: &'a [LevelInstant],
@@ -124,7 +130,7 @@ impl Experiment {
             Contacts::none()
         };
         let places = Places::new(scenario);
-        let origins = scenario.origins();
+        let origins = scenario.origins_at(&scenario.start());
         let gains = LawGains {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
             stiffness: controller.null_space().stiffness,
@@ -145,7 +151,7 @@ impl Experiment {
         for cycle in 0..cycles {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
-            stop = unsafe_motion(&truth, controller.model()).map(Stop::Safety);
+            stop = unsafe_motion(&truth, controller.model().speed_limit()).map(Stop::Safety);
             if stop.is_some() {
                 break;
             }
@@ -155,7 +161,7 @@ impl Experiment {
                 dq,
                 interval_s: cycle_s,
             };
-            let reference = scenario.reference(&origins, t_s);
+            let reference = scenario.reference(&origins, &scenario.start(), t_s);
             let mut insight = Insight::default();
             let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
                 let decision = self.controller.decide(cycle, &gains);
@@ -179,7 +185,10 @@ impl Experiment {
             let instant = Instant {
                 t_s,
                 state: &truth,
-                step: &step,
+                torque: &step.torque,
+                residual: &step.residual,
+                saturated: step.status.saturated.any(),
+                rank: step.status.rank.any(),
                 tau_ext: &-contact_torque,
                 hand_force_n,
                 conditioning: &insight.conditioning,
@@ -239,15 +248,19 @@ impl Experiment {
             hand_force_max_n: contacts.has_hands().then(|| metrics.hand_force()),
             limits: metrics.limits(),
             faults,
+            link: None,
         }
     }
 }
 
 /// Why the true motion must be stopped, if it must.
-fn unsafe_motion(state: &JointState<f64>, model: &ArmModel<f64>) -> Option<String> {
-    for joint in 0..model.speed_limit().len() {
+pub(crate) fn unsafe_motion(
+    state: &JointState<f64>,
+    speed_limit: &JointVector<f64>,
+) -> Option<String> {
+    for joint in 0..speed_limit.len() {
         let (q, dq) = (state.q[joint], state.dq[joint]);
-        let limit = SPEED_FACTOR * model.speed_limit()[joint];
+        let limit = SPEED_FACTOR * speed_limit[joint];
         if !(q.is_finite() && dq.is_finite()) {
             return Some(format!(
                 "joint {} is not finite: q = {q} rad, dq = {dq} rad/s",

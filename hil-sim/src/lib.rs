@@ -18,6 +18,7 @@ pub mod output;
 pub mod paper;
 pub mod plant;
 pub mod report;
+pub mod robot;
 pub mod scenario;
 pub mod summary;
 pub mod trace;

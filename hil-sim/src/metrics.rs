@@ -292,11 +292,13 @@ impl Metrics {
             .iter()
             .any(|contact| contact.inside(sample.t_s));
         for (level, shown) in self.levels.iter_mut().zip(sample.levels) {
-            level.leak = Some(
-                level
-                    .leak
-                    .map_or(shown.leak, |largest| largest.max(shown.leak)),
-            );
+            if !shown.leak.is_nan() {
+                level.leak = Some(
+                    level
+                        .leak
+                        .map_or(shown.leak, |largest| largest.max(shown.leak)),
+                );
+            }
             let error = shown.error * 1e3;
             level.all.add(error);
             if inside {
@@ -313,8 +315,8 @@ impl Metrics {
         }
         let mut beyond = false;
         for joint in 0..DOF {
-            let (q, torque) = (sample.state.q[joint], sample.step.torque[joint]);
-            let residual = sample.step.residual[joint];
+            let (q, torque) = (sample.state.q[joint], sample.torque[joint]);
+            let residual = sample.residual[joint];
             self.residual.add(residual);
             self.residual_error.add(residual + sample.tau_ext[joint]);
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
@@ -323,8 +325,8 @@ impl Metrics {
             beyond |= q.abs() > self.position_limit[joint];
         }
         self.limits.position += usize::from(beyond);
-        self.limits.torque += usize::from(sample.step.status.saturated.any());
-        self.limits.rank += usize::from(sample.step.status.rank.any());
+        self.limits.torque += usize::from(sample.saturated);
+        self.limits.rank += usize::from(sample.rank);
     }
 
     /// Cycles added.

@@ -375,25 +375,29 @@ impl Scenario {
         Contacts::new(&self.pushes, &self.hands)
     }
 
-    /// The reference at time `t_s`, from where the levels are at the start.
+    /// The reference at time `t_s`, from where the levels are at the start, with
+    /// the posture q_d `posture` \[rad\].
     #[must_use]
-    pub fn reference(&self, origins: &[TaskReference<f64>], t_s: f64) -> Reference<f64> {
+    pub fn reference(
+        &self,
+        origins: &[TaskReference<f64>],
+        posture: &JointVector<f64>,
+        t_s: f64,
+    ) -> Reference<f64> {
         let levels = self.levels.iter().zip(origins);
         Reference {
             tasks: levels
                 .map(|(level, origin)| level.reference.sample(origin, t_s))
                 .collect(),
-            posture: self.start(),
+            posture: *posture,
         }
     }
 
-    /// Where the levels' points and frames are at the start, base-plate frame.
+    /// Where the levels' points and frames are in the posture `q` \[rad\],
+    /// base-plate frame.
     #[must_use]
-    pub fn origins(&self) -> Vec<TaskReference<f64>> {
-        self.levels
-            .iter()
-            .map(|level| level.place(&self.start()))
-            .collect()
+    pub fn origins_at(&self, q: &JointVector<f64>) -> Vec<TaskReference<f64>> {
+        self.levels.iter().map(|level| level.place(q)).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use crate::metrics::{
 };
 use crate::names::Named;
 use crate::plant::PlantKind;
+use crate::robot::LinkFigures;
 use crate::scenario::Scenario;
 
 /// Outcome of a run.
@@ -81,6 +82,8 @@ pub struct Summary {
     pub hand_force_max_n: Option<f64>,
     pub limits: LimitCounts,
     pub faults: FaultCounts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<LinkFigures>,
 }
 
 /// Holds the figures against the limits that the scenario sets for this plant,

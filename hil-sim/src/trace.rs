@@ -47,13 +47,12 @@ impl<W: Write> Trace<W> {
     /// Those of the writer.
     pub fn push(&mut self, instant: &Instant<'_>) -> io::Result<()> {
         write!(self.out, "{:.16e}", instant.t_s)?;
-        let step = instant.step;
         for vector in [
             &instant.state.q,
             &instant.state.dq,
-            &step.torque,
+            instant.torque,
             instant.tau_ext,
-            &step.residual,
+            instant.residual,
         ] {
             self.values(vector.as_slice())?;
         }

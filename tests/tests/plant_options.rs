@@ -232,7 +232,7 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
     let config = scenario.controller_config(options.dead_cycles as u8);
     let controller = Controller::new(&model, &config).expect("a valid configuration");
     let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
-    let (origins, mut contacts) = (scenario.origins(), scenario.contacts());
+    let (origins, mut contacts) = (scenario.origins_at(&scenario.start()), scenario.contacts());
     let (arm, start) = (scenario.arm(), scenario.start());
     let mut state = ControllerState::new();
     let mut plant = Plant::with_options(kind, arm, start, cycle_s, seed, options);
@@ -247,7 +247,7 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
             dq,
             interval_s: cycle_s,
         };
-        let reference = scenario.reference(&origins, t_s);
+        let reference = scenario.reference(&origins, &scenario.start(), t_s);
         let step = controller.step(&mut state, &measurement, &reference);
         assert_eq!(step.status.fault, None, "{options:?} at {t_s} s");
         let (x, _) = plant.model().point(&truth, point.link, &point.offset);

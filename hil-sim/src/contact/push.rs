@@ -1,10 +1,11 @@
 //! A scripted push: constant force between two linear ramps.
 
-use controller_core::joint::Vector3;
+use controller_core::joint::{JointState, JointVector, Vector3};
 use serde::Deserialize;
 
 use super::Interval;
 use crate::invalid::{Invalid, in_range, positive};
+use crate::plant::PlantModel;
 use crate::scenario::PointSpec;
 
 /// Force on a point of the arm, by the clock.
@@ -45,6 +46,22 @@ impl Push {
             to_s: self.to_s,
             ramp_s: self.ramp_s,
         }
+    }
+
+    /// Joint torque J^T F of it \[Nm\] at time `t_s` \[s\].
+    #[must_use]
+    pub fn torque(
+        &self,
+        t_s: f64,
+        plant: &PlantModel,
+        state: &JointState<f64>,
+    ) -> JointVector<f64> {
+        let force = self.force(t_s);
+        if force == Vector3::zeros() {
+            return JointVector::zeros();
+        }
+        let point = self.point.resolve();
+        plant.point_torque(&state.q, point.link, &point.offset, &force)
     }
 
     /// Force on the arm at time `t_s` \[N\].

@@ -19,7 +19,7 @@ pub struct LevelInstant {
     /// Norm of their difference \[m\], or of the orientation error \[rad\].
     pub error: f64,
     /// Norm of the task acceleration that the torques of lower levels and of the
-    /// null space cause on this arm \[m/s2\], or \[rad/s2\].
+    /// null space cause on this arm \[m/s2\], or \[rad/s2\]; NaN where it is not known.
     pub leak: f64,
     /// Desired position of the point \[m\].
     pub desired_point: [f64; 3],
@@ -28,9 +28,9 @@ pub struct LevelInstant {
 }
 
 /// The points and axes of a scenario's levels.
-pub(super) struct Places(pub Vec<Place>);
+pub(crate) struct Places(pub Vec<Place>);
 
-pub(super) struct Place {
+pub(crate) struct Place {
     task: TaskSpec,
     point: LinkPoint<f64>,
     axes: Axes,
@@ -60,6 +60,7 @@ impl Places {
                 let shown = LevelInstant {
                     desired_point: reference.x.into(),
                     actual_point: x.into(),
+                    leak: f64::NAN,
                     ..LevelInstant::default()
                 };
                 match place.task {
@@ -125,7 +126,11 @@ impl Place {
 
 /// Angular velocity of a link \[rad/s\], from the velocities of its frame's origin
 /// and of the ends of its unit axes: w = sum of e_i x (de_i) / 2.
-fn angular_velocity(plant: &PlantModel, state: &JointState<f64>, link: usize) -> Vector3<f64> {
+pub(crate) fn angular_velocity(
+    plant: &PlantModel,
+    state: &JointState<f64>,
+    link: usize,
+) -> Vector3<f64> {
     let (origin, origin_rate) = plant.point(state, link, &Vector3::zeros());
     let mut sum = Vector3::zeros();
     for axis in 0..3 {

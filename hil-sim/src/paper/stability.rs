@@ -115,7 +115,7 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
     };
 
     let mut reference = Reference::new();
-    for mut origin in scenario.origins() {
+    for mut origin in scenario.origins_at(&scenario.start()) {
         if kind != Kind::NullSpace {
             origin.x += Vector3::from([TASK_OFFSET_M, -TASK_OFFSET_M, TASK_OFFSET_M]);
         }

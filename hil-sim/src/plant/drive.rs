@@ -4,6 +4,7 @@ use controller_core::joint::{DOF, JointMatrix, JointState, JointVector};
 
 use super::elastic::{Elastic, Elimination};
 use super::friction::Friction;
+use super::impedance::Impedance;
 use super::model::PlantModel;
 use super::options::PlantOptions;
 use super::stiction::{Stiction, viscous};
@@ -42,31 +43,38 @@ impl Drive {
         cycle_s: f64,
         substeps: u32,
         torque: &JointVector<f64>,
+        impedance: Option<&Impedance>,
         contact: &mut impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
     ) -> JointState<f64> {
         let h = cycle_s / f64::from(substeps);
         let mut state = *start;
         for step in 0..substeps {
             let pushed = contact(t_s + h * f64::from(step), &state);
-            state = self.step(model, &state, h, torque, &pushed);
+            state = self.step(model, &state, h, torque, impedance, &pushed);
         }
         state
     }
 
     /// One step of `h` \[s\] with the torques `torque` of the motors and `pushed`
-    /// of contacts \[Nm\].
+    /// of contacts \[Nm\]. The springs of `impedance` act on the motors.
     fn step(
         &mut self,
         model: &PlantModel,
         state: &JointState<f64>,
         h: f64,
         torque: &JointVector<f64>,
+        impedance: Option<&Impedance>,
         pushed: &JointVector<f64>,
     ) -> JointState<f64> {
-        let before = self.elastic.as_ref().map_or(state.dq, |e| e.motor.dq);
+        let motor = self.elastic.as_ref().map_or(*state, |e| e.motor);
+        let before = motor.dq;
         let friction = match self.stiction {
             None => Friction::at(&before),
             Some(_) => viscous(&before),
+        };
+        let friction = match impedance {
+            None => friction,
+            Some(impedance) => impedance.resist(friction, &motor, h),
         };
         let motors = match &self.elastic {
             None => rigid(h, torque, &friction),
@@ -112,7 +120,7 @@ fn rigid(h: f64, torque: &JointVector<f64>, friction: &Friction) -> Elimination 
 impl PlantModel {
     /// (M + diag(armature))^-1 \[rad/s2 per Nm\] at posture `q` \[rad\], by the
     /// accelerations that unit torques cause. For a weightless arm.
-    fn response(&self, q: &JointVector<f64>, armature: &JointVector<f64>) -> JointMatrix<f64> {
+    pub(crate) fn response(&self, q: &JointVector<f64>, armature: &JointVector<f64>) -> JointMatrix<f64> {
         let rest = JointVector::zeros();
         let mut response = JointMatrix::zeros();
         for i in 0..DOF {
@@ -171,7 +179,7 @@ mod tests {
                 // Another torque every step, up to 1 % from the level.
                 let push = random(&mut rng).component_mul(&JointVector::from(COULOMB))
                     * (0.99 * BREAK_AWAY);
-                state = drive.step(&model, &state, H, &(weight + push), &NONE);
+                state = drive.step(&model, &state, H, &(weight + push), None, &NONE);
                 match (&drive.elastic, motors) {
                     (Some(elastic), Some(motors)) => assert_eq!(elastic.motor, motors),
                     _ => assert_eq!(state, start),
@@ -192,7 +200,7 @@ mod tests {
                 for n in 0..40 {
                     let mut torque = model.gravity_torque(&state.q);
                     torque[joint] += COULOMB[joint] * if n == 0 { first } else { then };
-                    state = drive.step(&model, &state, H, &torque, &NONE);
+                    state = drive.step(&model, &state, H, &torque, None, &NONE);
                 }
                 state.dq[joint]
             };
@@ -218,7 +226,7 @@ mod tests {
             let (mut drive, mut state) = (drive(&model, POSTURE, true, false), state);
             let mut steps = 0;
             while state.dq[6] != 0.0 {
-                state = drive.step(&model, &state, h, &NONE, &NONE);
+                state = drive.step(&model, &state, h, &NONE, None, &NONE);
                 steps += 1;
                 assert_eq!(state.dq.rows(0, 6).amax(), 0.0);
             }
@@ -247,7 +255,7 @@ mod tests {
                     });
                     let back = (state.q - JointVector::from(posture)) * 0.5;
                     let torque = model.gravity_torque(&state.q) + sway - back;
-                    state = drive.step(&model, &state, H, &torque, &NONE);
+                    state = drive.step(&model, &state, H, &torque, None, &NONE);
                     let stiction = drive.stiction.as_ref().expect("on");
                     worst = worst.max(stiction.residual);
                     let moving = drive.elastic.as_ref().map_or(state.dq, |e| e.motor.dq);
@@ -288,7 +296,7 @@ mod tests {
                 let start = energy(&model, &drive, &state);
                 let (mut last, mut rise) = (start, 0.0f64);
                 for _ in 0..8000 {
-                    state = drive.step(&model, &state, H, &NONE, &NONE);
+                    state = drive.step(&model, &state, H, &NONE, None, &NONE);
                     let now = energy(&model, &drive, &state);
                     rise = rise.max((now - last) / start);
                     last = now;
@@ -327,7 +335,7 @@ mod tests {
             let (mut crossings, mut last) = (Vec::new(), drawn(&drive, &state));
             let mut n = 0;
             while crossings.len() < 11 {
-                state = drive.step(&model, &state, h, &NONE, &NONE);
+                state = drive.step(&model, &state, h, &NONE, None, &NONE);
                 let now = drawn(&drive, &state);
                 if now * last <= 0.0 {
                     crossings.push((f64::from(n) + last / (last - now)) * h);
@@ -368,7 +376,7 @@ mod tests {
             elastic.motor.q = JointVector::from(POSTURE) + load.component_div(&elastic.stiffness);
             let mut state = at_rest(POSTURE);
             for n in 0..2000 {
-                state = drive.step(&model, &state, H, &torque(f64::from(n) * H), &NONE);
+                state = drive.step(&model, &state, H, &torque(f64::from(n) * H), None, &NONE);
             }
             (state.q - rigid.q).amax()
         };

@@ -27,6 +27,12 @@ pub struct Friction {
 }
 
 impl Friction {
+    /// Joints that turn freely.
+    pub const NONE: Self = Self {
+        torque: controller_core::joint::zeros(),
+        slope: controller_core::joint::zeros(),
+    };
+
     /// Friction at the joint speeds `dq` \[rad/s\].
     #[must_use]
     pub fn at(dq: &JointVector<f64>) -> Self {

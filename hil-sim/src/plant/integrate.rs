@@ -3,6 +3,7 @@
 use controller_core::joint::{JointState, JointVector};
 
 use super::friction::Friction;
+use super::impedance::Impedance;
 use super::model::PlantModel;
 
 /// Longest Runge-Kutta step of the ideal plant \[s\].
@@ -70,7 +71,7 @@ pub(super) fn ideal(
     state
 }
 
-/// One cycle with friction, by `substeps` linearly implicit steps.
+/// One cycle with the resistance of `joints`, by `substeps` linearly implicit steps.
 ///
 /// Around zero speed friction is steep: on joint 7 it has a time constant of
 /// 60 us, which an explicit method would have to resolve. F(dq + h ddq) is
@@ -78,6 +79,7 @@ pub(super) fn ideal(
 /// carry a joint through zero speed, since F' is taken where the step starts,
 /// but it slows it down all the same while h F_c / (M v) < 5.7 with v the
 /// transition speed of friction. Joint 7, the lightest, sets the longest step.
+#[expect(clippy::too_many_arguments, reason = "those of a cycle")]
 pub(super) fn realistic(
     model: &PlantModel,
     start: &JointState<f64>,
@@ -85,12 +87,13 @@ pub(super) fn realistic(
     cycle_s: f64,
     substeps: u32,
     torque: &JointVector<f64>,
+    joints: &Resistance<'_>,
     contact: &mut impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
 ) -> JointState<f64> {
     let h = cycle_s / f64::from(substeps);
     let mut state = *start;
     for step in 0..substeps {
-        let friction = Friction::at(&state.dq);
+        let friction = joints.at(&state, h);
         let pushed = contact(t_s + h * f64::from(step), &state);
         let total = torque - friction.torque + pushed;
         let ddq = model.forward_dynamics(&state.q, &state.dq, &total, &(friction.slope * h));
@@ -103,10 +106,38 @@ pub(super) fn realistic(
     state
 }
 
+/// What resists the motion of rigid joints.
+pub(super) struct Resistance<'a> {
+    /// Friction with a smooth passage through zero speed.
+    pub friction: bool,
+    /// The robot's own springs and dampers.
+    pub impedance: Option<&'a Impedance>,
+}
+
+impl Resistance<'_> {
+    /// For a step of `h` \[s\] that starts at `state`.
+    fn at(&self, state: &JointState<f64>, h: f64) -> Friction {
+        let friction = if self.friction {
+            Friction::at(&state.dq)
+        } else {
+            Friction::NONE
+        };
+        match self.impedance {
+            None => friction,
+            Some(impedance) => impedance.resist(friction, state, h),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use controller_core::model::LWR_IV;
+
+    const ROUGH: Resistance<'_> = Resistance {
+        friction: true,
+        impedance: None,
+    };
 
     fn start() -> JointState<f64> {
         JointState {
@@ -171,7 +202,7 @@ mod tests {
                 let t = f64::from(n) * cycle;
                 let held = torque(t);
                 let mut none = |_: f64, _: &JointState<f64>| JointVector::zeros();
-                realistic(&model, &state, t, cycle, substeps, &held, &mut none)
+                realistic(&model, &state, t, cycle, substeps, &held, &ROUGH, &mut none)
             })
         };
         let best = end(1024);
@@ -197,7 +228,7 @@ mod tests {
         let mut energy = model.kinetic_energy(&state);
         let mut falling = true;
         for _ in 0..steps {
-            state = realistic(&model, &state, 0.0, h, 1, &none, &mut |_, _| none);
+            state = realistic(&model, &state, 0.0, h, 1, &none, &ROUGH, &mut |_, _| none);
             let now = model.kinetic_energy(&state);
             falling &= now <= energy;
             energy = now;

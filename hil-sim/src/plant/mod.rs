@@ -17,6 +17,7 @@ mod aba;
 mod drive;
 pub mod elastic;
 pub mod friction;
+pub mod impedance;
 mod integrate;
 pub mod mismatch;
 pub mod model;
@@ -29,11 +30,13 @@ use controller_core::joint::{JointState, JointVector};
 use controller_core::model::ArmParameters;
 
 use drive::Drive;
-use options::DeadTime;
+use integrate::Resistance;
 
+pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
 pub use mismatch::mismatched;
 pub use model::PlantModel;
+pub(crate) use options::DeadTime;
 pub use noise::Rng;
 pub use options::{DEAD_CYCLES_MAX, PlantOptions};
 pub use sensor::Sensor;
@@ -176,12 +179,45 @@ impl Plant {
         &mut self,
         t_s: f64,
         torque: &JointVector<f64>,
+        external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
+    ) {
+        self.advance_with(t_s, torque, &Impedance::none(), external);
+    }
+
+    /// As [`Plant::advance`], with springs and dampers that act on the motors
+    /// besides `torque`. They are the robot's own: no dead time, no noise.
+    ///
+    /// Where they do something the ideal plant is integrated by linearly implicit
+    /// steps as the realistic one, without friction.
+    pub fn advance_with(
+        &mut self,
+        t_s: f64,
+        torque: &JointVector<f64>,
+        impedance: &Impedance,
         mut external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) {
+        let impedance = Some(impedance).filter(|impedance| !impedance.is_none());
         let torque = &self.dead_time.pass(torque);
         let model = &self.model;
         let mut contact = |t: f64, state: &JointState<f64>| external(t, model, state);
         self.state = match &mut self.imperfections {
+            None if impedance.is_some() => {
+                let reference = integrate::realistic_substeps(self.cycle_s);
+                let joints = Resistance {
+                    friction: false,
+                    impedance,
+                };
+                integrate::realistic(
+                    model,
+                    &self.state,
+                    t_s,
+                    self.cycle_s,
+                    self.options.substeps(reference),
+                    torque,
+                    &joints,
+                    &mut contact,
+                )
+            }
             None => {
                 let reference = integrate::ideal_substeps(self.cycle_s);
                 let substeps = self.options.substeps(reference);
@@ -210,11 +246,22 @@ impl Plant {
                         cycle_s,
                         substeps,
                         &noisy,
+                        &Resistance {
+                            friction: true,
+                            impedance,
+                        },
                         &mut contact,
                     ),
-                    Some(drive) => {
-                        drive.cycle(model, state, t_s, cycle_s, substeps, &noisy, &mut contact)
-                    }
+                    Some(drive) => drive.cycle(
+                        model,
+                        state,
+                        t_s,
+                        cycle_s,
+                        substeps,
+                        &noisy,
+                        impedance,
+                        &mut contact,
+                    ),
                 }
             }
         };

@@ -219,7 +219,7 @@ impl PlantModel {
     }
 
     /// The same arm where nothing has weight.
-    pub(super) fn weightless(&self) -> Self {
+    pub(crate) fn weightless(&self) -> Self {
         Self {
             gravity: Vector3::zeros(),
             ..self.clone()

@@ -36,7 +36,7 @@ impl PlantOptions {
 /// Torque commands on their way: what goes in comes out a fixed number of
 /// cycles later.
 #[derive(Clone, Debug)]
-pub(super) struct DeadTime {
+pub(crate) struct DeadTime {
     /// The first `cycles` entries are a ring of the commands under way \[Nm\].
     ring: [JointVector<f64>; DEAD_CYCLES_MAX],
     cycles: usize,

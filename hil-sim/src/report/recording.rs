@@ -167,7 +167,7 @@ impl Recording {
         self.push(&Cycle {
             t_s: instant.t_s,
             q: &instant.state.q,
-            residual: &instant.step.residual,
+            residual: instant.residual,
             tau_ext: instant.tau_ext,
             conditioning: instant.conditioning,
             levels: &instant.levels.iter().map(level).collect::<Vec<_>>(),

@@ -1,0 +1,160 @@
+//! What the motors get besides the robot's own weight, and how one way of driving
+//! turns into another without a step.
+
+use controller_core::joint::JointVector;
+
+use crate::plant::Impedance;
+
+/// One way of driving: a torque, and springs and dampers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Driving {
+    /// Added torque \[Nm\].
+    pub torque: JointVector<f64>,
+    /// Springs and dampers.
+    pub impedance: Impedance,
+}
+
+impl Driving {
+    /// Springs and dampers alone.
+    #[must_use]
+    pub fn by_springs(impedance: Impedance) -> Self {
+        Self {
+            torque: JointVector::zeros(),
+            impedance,
+        }
+    }
+}
+
+/// The passage from one way of driving to another. The old one keeps 1 - s of
+/// its torque, stiffness and damping, the new springs and dampers have s of
+/// theirs, and s grows from 0 to 1 by equal shares per cycle. As all of them are
+/// torques that add up, their sum has no step. The new added torque acts at
+/// once: its sender decides how it begins.
+#[derive(Clone, Debug)]
+pub struct Passage {
+    old: Driving,
+    /// What the targets move in a cycle \[rad\]; it comes to rest with the passage.
+    rate: JointVector<f64>,
+    done: u64,
+    length: u64,
+}
+
+impl Passage {
+    /// No passage under way; later ones take `length` cycles (above 0).
+    #[must_use]
+    pub fn none(length: u64) -> Self {
+        Self {
+            old: Driving::by_springs(Impedance::none()),
+            rate: JointVector::zeros(),
+            done: length,
+            length,
+        }
+    }
+
+    /// Starts from `old`, whose targets moved by `rate` \[rad\] in the last cycle.
+    pub fn begin(&mut self, old: Driving, rate: JointVector<f64>) {
+        self.old = old;
+        self.rate = rate;
+        self.done = 0;
+    }
+
+    /// Whether it is under way.
+    #[must_use]
+    pub fn is_running(&self) -> bool {
+        self.done < self.length
+    }
+
+    /// One cycle: how far the targets still move in it \[rad\]. The old ones do;
+    /// new ones that are to come to rest together with them shall as well.
+    pub fn next(&mut self) -> JointVector<f64> {
+        if !self.is_running() {
+            return JointVector::zeros();
+        }
+        self.done += 1;
+        let s = self.share();
+        // From 1 to 0 with no slope at either end.
+        let moved = self.rate * ((1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s));
+        self.old.impedance.target += moved;
+        moved
+    }
+
+    fn share(&self) -> f64 {
+        self.done as f64 / self.length as f64
+    }
+
+    /// What acts in this cycle, when `new` is what shall act in the end.
+    #[must_use]
+    pub fn blend(&self, new: &Driving) -> Driving {
+        if !self.is_running() {
+            return *new;
+        }
+        let s = self.share();
+        let (from, to) = (&self.old.impedance, &new.impedance);
+        let (before, after) = (from.stiffness * (1.0 - s), to.stiffness * s);
+        let stiffness = before + after;
+        Driving {
+            torque: self.old.torque * (1.0 - s) + new.torque,
+            impedance: Impedance {
+                stiffness,
+                damping: from.damping * (1.0 - s) + to.damping * s,
+                target: JointVector::from_fn(|i, _| {
+                    if stiffness[i] > 0.0 {
+                        (before[i] * from.target[i] + after[i] * to.target[i]) / stiffness[i]
+                    } else {
+                        to.target[i]
+                    }
+                }),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::joint::JointState;
+
+    #[test]
+    fn the_sum_of_torques_goes_evenly_from_old_to_new() {
+        let spring = |stiffness: f64, damping: f64, target: f64| Impedance {
+            stiffness: JointVector::repeat(stiffness),
+            damping: JointVector::repeat(damping),
+            target: JointVector::repeat(target),
+        };
+        let old = Driving {
+            torque: JointVector::repeat(10.0),
+            impedance: spring(200.0, 5.0, 0.1),
+        };
+        let new = Driving::by_springs(spring(1000.0, 40.0, -0.02));
+        let state = JointState {
+            q: JointVector::repeat(0.01),
+            dq: JointVector::repeat(0.3),
+        };
+        let total = |driving: &Driving| (driving.torque + driving.impedance.torque(&state))[2];
+        let mut passage = Passage::none(50);
+        assert_eq!(passage.blend(&new), new);
+        passage.begin(old, JointVector::zeros());
+        for cycle in 1..=50 {
+            passage.next();
+            let s = f64::from(cycle) / 50.0;
+            let expected = (1.0 - s) * total(&old) + s * total(&new);
+            assert!((total(&passage.blend(&new)) - expected).abs() < 1e-12);
+        }
+        assert_eq!(passage.blend(&new), new);
+    }
+
+    #[test]
+    fn moving_targets_come_to_rest() {
+        let mut passage = Passage::none(50);
+        passage.begin(
+            Driving::by_springs(Impedance::none()),
+            JointVector::repeat(1e-3),
+        );
+        let steps: Vec<_> = (0..60).map(|_| passage.next()[0]).collect();
+        assert!(steps.windows(2).all(|pair| pair[1] <= pair[0]));
+        assert!(steps[0] > 0.99e-3 && steps[49] == 0.0 && steps[59] == 0.0);
+        // Half of the way at full speed.
+        let way: f64 = steps.iter().sum();
+        assert!((way - 0.0245).abs() < 1e-4, "{way}");
+    }
+}

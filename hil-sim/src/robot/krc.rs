@@ -1,0 +1,509 @@
+//! The robot controller's logic: which state the link is in, which answers may
+//! act, and what the motors get. No clock, no datagrams, no plant.
+
+use controller_core::joint::{DOF, JointMatrix, JointVector};
+
+use super::driving::{Driving, Passage};
+use super::options::{Krl, RobotOptions, Scheme, cycles};
+use super::order::Order;
+use super::rating::{Quality, Rating};
+use crate::plant::Impedance;
+
+/// State of the link. There is no state "off": a robot that is off sends nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Answers are rated and move nothing.
+    Monitor,
+    /// Answers move the robot.
+    Command,
+}
+
+/// Why the content of an answer is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// cmdFlags changed in command state.
+    Flags,
+    /// jntPos jumps.
+    Jump,
+}
+
+/// What a cycle brings besides the answer.
+#[derive(Clone, Copy)]
+pub struct Now<'a> {
+    /// Rating with this cycle in it.
+    pub rating: &'a Rating,
+    /// Whether the drives have power.
+    pub drives_on: bool,
+    /// Measured position \[rad\].
+    pub q: &'a JointVector<f64>,
+    /// M of the robot's model \[kg m2\].
+    pub mass_matrix: &'a JointMatrix<f64>,
+}
+
+/// The robot controller.
+#[derive(Clone, Debug)]
+pub struct Krc {
+    options: RobotOptions,
+    cycle_s: f64,
+    /// Largest motion of jntPos in a cycle \[rad\].
+    reach: JointVector<f64>,
+    state: State,
+    scheme: Scheme,
+    /// Position commanded before FRI \[rad\].
+    hold: JointVector<f64>,
+    /// Position commanded in all \[rad\].
+    commanded: JointVector<f64>,
+    /// What it moves per cycle \[rad\].
+    rate: JointVector<f64>,
+    /// Cycles since the order that acts came in.
+    age: u32,
+    order: Option<Order>,
+    /// An order of this cycle.
+    fresh: bool,
+    flags: u32,
+    refused: Option<Refusal>,
+    /// The last answer jumped as well.
+    jumping: bool,
+    /// Cycles in a row that were good enough to begin.
+    good: u64,
+    passage: Passage,
+    last: Driving,
+    /// int\[1\] of the KRL program.
+    answer_int: i32,
+    left: bool,
+    fallbacks: u64,
+    entries: u64,
+    told: String,
+    messages: Vec<String>,
+}
+
+impl Krc {
+    /// In monitor state, holding `q0` \[rad\]; `speed_limit` \[rad/s\] is the data sheet's.
+    #[must_use]
+    pub fn new(
+        options: RobotOptions,
+        cycle_s: f64,
+        q0: &JointVector<f64>,
+        speed_limit: &JointVector<f64>,
+    ) -> Self {
+        Self {
+            options,
+            cycle_s,
+            reach: speed_limit * (options.speed_factor * cycle_s),
+            state: State::Monitor,
+            scheme: options.scheme,
+            hold: *q0,
+            commanded: *q0,
+            rate: JointVector::zeros(),
+            age: 0,
+            order: None,
+            fresh: false,
+            flags: 0,
+            refused: None,
+            jumping: false,
+            good: 0,
+            passage: Passage::none(cycles(options.fade_s, cycle_s)),
+            last: Driving::by_springs(Impedance::none()),
+            answer_int: 10,
+            left: false,
+            fallbacks: 0,
+            entries: 0,
+            told: String::new(),
+            messages: Vec::new(),
+        }
+    }
+
+    /// State that the coming measurement reports.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Control scheme.
+    #[must_use]
+    pub fn scheme(&self) -> Scheme {
+        self.scheme
+    }
+
+    /// Position commanded before FRI \[rad\], and what FRI adds to it.
+    #[must_use]
+    pub fn positions(&self) -> (JointVector<f64>, JointVector<f64>) {
+        match self.state {
+            State::Monitor => (self.hold, JointVector::zeros()),
+            State::Command => (self.hold, self.commanded - self.hold),
+        }
+    }
+
+    /// int\[1\] of the KRL program: 10 after its start, 1 in command state, 0 after it.
+    #[must_use]
+    pub fn answer_int(&self) -> i32 {
+        self.answer_int
+    }
+
+    /// How often command state was lost against the client's will.
+    #[must_use]
+    pub fn fallbacks(&self) -> u64 {
+        self.fallbacks
+    }
+
+    /// How often command state was entered.
+    #[must_use]
+    pub fn entries(&self) -> u64 {
+        self.entries
+    }
+
+    /// Whether one way of driving is turning into another, or the order that acts
+    /// is not of this cycle.
+    #[must_use]
+    pub fn is_bridging(&self) -> bool {
+        self.passage.is_running() || (self.state == State::Command && self.age > 0)
+    }
+
+    /// What there is to say since the last call.
+    pub fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
+    }
+
+    /// The order that acts.
+    #[must_use]
+    pub fn order(&self) -> Option<&Order> {
+        self.order.as_ref()
+    }
+
+    /// An answer of this cycle, newer than those before, with the arm at `q` \[rad\].
+    ///
+    /// # Errors
+    /// It is not used; in command state changed flags end that state.
+    pub fn accept(&mut self, order: &Order, q: &JointVector<f64>) -> Result<(), Refusal> {
+        let checked = match self.state {
+            State::Monitor => Ok(()),
+            State::Command => self.check(order, q),
+        };
+        self.refused = checked.err();
+        if checked.is_ok() {
+            self.take(order);
+        }
+        checked
+    }
+
+    fn check(&mut self, order: &Order, q: &JointVector<f64>) -> Result<(), Refusal> {
+        if order.flags != self.flags {
+            return Err(Refusal::Flags);
+        }
+        let Some(position) = &order.position else {
+            return Ok(());
+        };
+        // The last order was good for one cycle and every one bridged since.
+        let elapsed = f64::from(self.age + 1);
+        for joint in 0..DOF {
+            let (moved, allowed) = if self.follows(order, joint) {
+                // Half a unit of the last place of binary32 at 3 rad, twice.
+                let reach = self.reach[joint] * elapsed + 5e-7;
+                ((position[joint] - self.last_position(joint)).abs(), reach)
+            } else {
+                ((position[joint] - q[joint]).abs(), self.options.jump_rad)
+            };
+            // Written so that a number that is none fails.
+            if !(moved <= allowed) {
+                // A row of them is one event.
+                if !std::mem::replace(&mut self.jumping, true) {
+                    self.say(format!(
+                        "jntPos of joint {} jumps by {:.1} mrad; allowed: {:.1}; answer not used",
+                        joint + 1,
+                        moved * 1e3,
+                        allowed * 1e3
+                    ));
+                }
+                return Err(Refusal::Jump);
+            }
+        }
+        self.jumping = false;
+        Ok(())
+    }
+
+    /// Whether jntPos moves this joint.
+    fn follows(&self, order: &Order, joint: usize) -> bool {
+        self.scheme == Scheme::Position || self.stiffness(order)[joint] > 0.0
+    }
+
+    /// jntPos of the order that acts; where it gave none, the commanded position.
+    fn last_position(&self, joint: usize) -> f64 {
+        let given = self.order.as_ref().and_then(|order| order.position);
+        given.map_or(self.commanded[joint], |position| position[joint])
+    }
+
+    fn take(&mut self, order: &Order) {
+        if self.state == State::Command
+            && let Some(position) = order.position
+        {
+            let before = JointVector::from_fn(|i, _| self.last_position(i));
+            self.rate = (position - before) / f64::from(self.age + 1);
+            self.commanded = position;
+        }
+        if self.state == State::Monitor && self.order.is_some_and(|last| last.flags != order.flags)
+        {
+            // Flags have to be chosen before command state: wait anew.
+            if self.good > 0 {
+                self.tell_once("cmdFlags changed while waiting; choose them before command state");
+            }
+            self.good = 0;
+        }
+        self.order = Some(*order);
+        self.fresh = true;
+    }
+
+    /// Ends a cycle: what the motors get in it besides the robot's own dynamics.
+    /// `added` delays the added torque of orders by the dead time; it is told
+    /// when what is under way is void.
+    pub fn cycle(&mut self, now: &Now<'_>, added: &mut impl Added) -> Driving {
+        self.age = if self.fresh { 0 } else { self.age.saturating_add(1) };
+        self.fresh = false;
+        if self.state == State::Command {
+            self.bridge();
+            if let Some((reason, fault)) = self.must_stop(now) {
+                self.stop(now, &reason, fault);
+                added.void();
+            }
+        }
+        let moved = self.passage.next();
+        if self.state == State::Monitor {
+            self.hold += moved;
+            self.commanded = self.hold;
+        }
+        let wanted = match self.state {
+            State::Monitor => Driving::by_springs(self.springs(
+                now,
+                &JointVector::repeat(self.options.stiffness),
+                &JointVector::repeat(self.options.damping),
+                &self.hold,
+            )),
+            State::Command => self.ordered(now, added),
+        };
+        self.last = self.passage.blend(&wanted);
+        self.consider(now);
+        self.refused = None;
+        self.last
+    }
+
+    /// Without an answer the position scheme goes on as before, for as long as
+    /// missing answers are borne.
+    fn bridge(&mut self) {
+        if self.age > 0
+            && self.scheme == Scheme::Position
+            && self.age <= self.options.rating.misses_max
+        {
+            self.commanded += self.rate;
+        }
+    }
+
+    /// Why command state must end, and whether that is a fault.
+    fn must_stop(&self, now: &Now<'_>) -> Option<(String, bool)> {
+        let wish = self.order.is_none_or(|order| order.wants_command);
+        if self.refused == Some(Refusal::Flags) {
+            let text = "cmdFlags changed in command state; they must stay constant";
+            Some((text.into(), true))
+        } else if !now.drives_on {
+            Some(("drives off".into(), true))
+        } else if now.rating.broken() {
+            let row = now.rating.row();
+            Some((format!("{row} answers missing in a row"), true))
+        } else if now.rating.quality() == Quality::Unacceptable {
+            let rate = now.rating.statistics().answer_rate;
+            Some((format!("answer rate {rate:.2}: link unacceptable"), true))
+        } else if self.options.krl == Krl::Handshake && !wish {
+            Some(("the client gives command state back".into(), false))
+        } else {
+            None
+        }
+    }
+
+    /// Back to monitor state: where an order moved the joint by springs, these
+    /// come to rest; other joints are held where they are.
+    fn stop(&mut self, now: &Now<'_>, reason: &str, fault: bool) {
+        let stiffness = self.last.impedance.stiffness;
+        let follows = |i: usize| stiffness[i] > 0.0 && self.scheme == Scheme::Position;
+        let rate = JointVector::from_fn(|i, _| {
+            let bound = self.reach[i];
+            if follows(i) { self.rate[i].clamp(-bound, bound) } else { 0.0 }
+        });
+        self.hold =
+            JointVector::from_fn(|i, _| if follows(i) { self.commanded[i] } else { now.q[i] });
+        self.passage.begin(self.last, rate);
+        self.leave_command();
+        self.fallbacks += u64::from(fault);
+        self.say(format!("monitor state: {reason}"));
+    }
+
+    fn leave_command(&mut self) {
+        self.state = State::Monitor;
+        self.commanded = self.hold;
+        self.rate = JointVector::zeros();
+        self.good = 0;
+        self.answer_int = 0;
+        self.told.clear();
+    }
+
+    /// Leaves command state for good; the last cycle's torque stays the last.
+    pub fn leave(&mut self) {
+        self.left = true;
+        if self.state == State::Command {
+            self.leave_command();
+        }
+    }
+
+    /// What the order that acts asks for.
+    fn ordered(&self, now: &Now<'_>, added: &mut impl Added) -> Driving {
+        let none = JointVector::zeros();
+        let Some(order) = &self.order else {
+            return Driving::by_springs(Impedance::none());
+        };
+        match self.scheme {
+            Scheme::Position => Driving {
+                torque: added.pass(&none),
+                impedance: self.springs(
+                    now,
+                    &JointVector::repeat(self.options.position_stiffness),
+                    &JointVector::repeat(1.0),
+                    &self.commanded,
+                ),
+            },
+            Scheme::JointImpedance => Driving {
+                torque: added.pass(&order.torque.unwrap_or(none)),
+                impedance: self.springs(
+                    now,
+                    &self.stiffness(order),
+                    &order
+                        .damping
+                        .unwrap_or(JointVector::repeat(self.options.damping)),
+                    &self.commanded,
+                ),
+            },
+        }
+    }
+
+    fn stiffness(&self, order: &Order) -> JointVector<f64> {
+        order
+            .stiffness
+            .unwrap_or(JointVector::repeat(self.options.stiffness))
+    }
+
+    /// Springs K to `target` with D_i = 2 d_i sqrt(K_i M_ii).
+    fn springs(
+        &self,
+        now: &Now<'_>,
+        stiffness: &JointVector<f64>,
+        ratio: &JointVector<f64>,
+        target: &JointVector<f64>,
+    ) -> Impedance {
+        Impedance {
+            stiffness: *stiffness,
+            damping: JointVector::from_fn(|i, _| {
+                2.0 * ratio[i] * (stiffness[i] * now.mass_matrix[(i, i)]).sqrt()
+            }),
+            target: *target,
+        }
+    }
+
+    /// In monitor state: whether command state begins with the next measurement.
+    fn consider(&mut self, now: &Now<'_>) {
+        if self.state == State::Command || self.left {
+            return;
+        }
+        let Some(order) = self.order else { return };
+        let wish = self.options.krl == Krl::Auto || order.wants_command;
+        let good = now.rating.quality() >= Quality::Ok && self.age == 0 && wish;
+        if !good {
+            // One missing answer does not begin the wait anew; a bad link does.
+            if now.rating.quality() < Quality::Ok || !wish {
+                self.good = 0;
+            }
+            return;
+        }
+        self.good += 1;
+        if self.good < cycles(self.options.good_for_s, self.cycle_s) {
+            return;
+        }
+        self.good = 0;
+        match self.entry(&order, now) {
+            Err(message) => {
+                self.tell_once(&message);
+            }
+            Ok(scheme) => {
+                self.scheme = scheme;
+                self.state = State::Command;
+                self.answer_int = 1;
+                self.flags = order.flags;
+                self.rate = JointVector::zeros();
+                self.commanded = self.hold;
+                self.passage.begin(self.last, JointVector::zeros());
+                self.entries += 1;
+                self.told.clear();
+                self.say(format!("command state, cmdFlags {:#06x}", order.flags));
+            }
+        }
+    }
+
+    /// The checks before command state, in the client's terms.
+    fn entry(&self, order: &Order, now: &Now<'_>) -> Result<Scheme, String> {
+        let scheme = match self.options.krl {
+            Krl::Auto => self.options.scheme,
+            Krl::Handshake => Scheme::from_strategy(order.strategy)?,
+        };
+        if !now.drives_on {
+            return Err("drives are off".into());
+        }
+        match &order.position {
+            None if scheme == Scheme::Position => {
+                return Err("cmdFlags do not set jntPos (0x0001), which this scheme needs".into());
+            }
+            None => (),
+            Some(position) => {
+                for joint in 0..DOF {
+                    let off = (position[joint] - self.hold[joint]).abs();
+                    if off > self.options.entry_position_rad {
+                        return Err(format!(
+                            "jntPos of joint {} is {:.1} mrad from the commanded position; \
+                             allowed: {:.1}",
+                            joint + 1,
+                            off * 1e3,
+                            self.options.entry_position_rad * 1e3
+                        ));
+                    }
+                }
+            }
+        }
+        if let Some(torque) = &order.torque {
+            for joint in 0..DOF {
+                if torque[joint].abs() > self.options.entry_torque_nm {
+                    return Err(format!(
+                        "addJntTrq of joint {} is {:.2} Nm; allowed: {:.2}",
+                        joint + 1,
+                        torque[joint],
+                        self.options.entry_torque_nm
+                    ));
+                }
+            }
+        }
+        Ok(scheme)
+    }
+
+    /// Why command state does not begin, once per reason in a row.
+    fn tell_once(&mut self, reason: &str) {
+        if reason != self.told {
+            self.told = reason.to_string();
+            self.say(format!("no command state: {reason}"));
+        }
+    }
+
+    fn say(&mut self, text: String) {
+        self.messages.push(text);
+    }
+}
+
+/// The way of the added torque to the motors.
+pub trait Added {
+    /// One cycle: takes what is ordered \[Nm\], gives what arrives.
+    fn pass(&mut self, ordered: &JointVector<f64>) -> JointVector<f64>;
+    /// Forgets what is under way.
+    fn void(&mut self);
+}
