@@ -49,8 +49,10 @@ impl Drive {
         let h = cycle_s / f64::from(substeps);
         let mut state = *start;
         for step in 0..substeps {
-            let pushed = contact(t_s + h * f64::from(step), &state);
-            state = self.step(model, &state, h, torque, impedance, &pushed);
+            let elapsed = h * f64::from(step);
+            let pushed = contact(t_s + elapsed, &state);
+            let springs = impedance.map(|impedance| impedance.after(elapsed));
+            state = self.step(model, &state, h, torque, springs.as_ref(), &pushed);
         }
         state
     }

@@ -93,7 +93,7 @@ pub(super) fn realistic(
     let h = cycle_s / f64::from(substeps);
     let mut state = *start;
     for step in 0..substeps {
-        let friction = joints.at(&state, h);
+        let friction = joints.at(&state, h * f64::from(step), h);
         let pushed = contact(t_s + h * f64::from(step), &state);
         let total = torque - friction.torque + pushed;
         let ddq = model.forward_dynamics(&state.q, &state.dq, &total, &(friction.slope * h));
@@ -115,8 +115,8 @@ pub(super) struct Resistance<'a> {
 }
 
 impl Resistance<'_> {
-    /// For a step of `h` \[s\] that starts at `state`.
-    fn at(&self, state: &JointState<f64>, h: f64) -> Friction {
+    /// For a step of `h` \[s\] that starts at `state`, `elapsed` \[s\] into the cycle.
+    fn at(&self, state: &JointState<f64>, elapsed: f64, h: f64) -> Friction {
         let friction = if self.friction {
             Friction::at(&state.dq)
         } else {
@@ -124,7 +124,7 @@ impl Resistance<'_> {
         };
         match self.impedance {
             None => friction,
-            Some(impedance) => impedance.resist(friction, state, h),
+            Some(impedance) => impedance.after(elapsed).resist(friction, state, h),
         }
     }
 }

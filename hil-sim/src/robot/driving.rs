@@ -23,6 +23,18 @@ impl Driving {
             impedance,
         }
     }
+
+    /// Where the springs are at the end of a cycle, at rest there.
+    #[must_use]
+    pub fn at_rest_after(&self, cycle_s: f64) -> Self {
+        Self {
+            torque: self.torque,
+            impedance: Impedance {
+                rate: JointVector::zeros(),
+                ..self.impedance.after(cycle_s)
+            },
+        }
+    }
 }
 
 /// The passage from one way of driving to another. The old one keeps 1 - s of
@@ -33,27 +45,31 @@ impl Driving {
 #[derive(Clone, Debug)]
 pub struct Passage {
     old: Driving,
-    /// What the targets move in a cycle \[rad\]; it comes to rest with the passage.
+    /// Speed of the targets at the beginning \[rad/s\]; they come to rest with the
+    /// passage.
     rate: JointVector<f64>,
+    cycle_s: f64,
     done: u64,
     length: u64,
 }
 
 impl Passage {
-    /// No passage under way; later ones take `length` cycles (above 0).
+    /// No passage under way; later ones take `length` cycles (above 0) of `cycle_s`
+    /// \[s\].
     #[must_use]
-    pub fn none(length: u64) -> Self {
+    pub fn none(length: u64, cycle_s: f64) -> Self {
         Self {
             old: Driving::by_springs(Impedance::none()),
             rate: JointVector::zeros(),
+            cycle_s,
             done: length,
             length,
         }
     }
 
-    /// Starts from `old`, whose targets moved by `rate` \[rad\] in the last cycle.
+    /// Starts from the cycle `old`, whose targets go on with `rate` \[rad/s\].
     pub fn begin(&mut self, old: Driving, rate: JointVector<f64>) {
-        self.old = old;
+        self.old = old.at_rest_after(self.cycle_s);
         self.rate = rate;
         self.done = 0;
     }
@@ -64,18 +80,19 @@ impl Passage {
         self.done < self.length
     }
 
-    /// One cycle: how far the targets still move in it \[rad\]. The old ones do;
+    /// One cycle: how fast the targets still move in it \[rad/s\]. The old ones do;
     /// new ones that are to come to rest together with them shall as well.
     pub fn next(&mut self) -> JointVector<f64> {
         if !self.is_running() {
             return JointVector::zeros();
         }
+        self.old = self.old.at_rest_after(self.cycle_s);
         self.done += 1;
         let s = self.share();
         // From 1 to 0 with no slope at either end.
-        let moved = self.rate * ((1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s));
-        self.old.impedance.target += moved;
-        moved
+        let rate = self.rate * ((1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s));
+        self.old.impedance.rate = rate;
+        rate
     }
 
     fn share(&self) -> f64 {
@@ -92,18 +109,22 @@ impl Passage {
         let (from, to) = (&self.old.impedance, &new.impedance);
         let (before, after) = (from.stiffness * (1.0 - s), to.stiffness * s);
         let stiffness = before + after;
+        let mean = |from: &JointVector<f64>, to: &JointVector<f64>| {
+            JointVector::from_fn(|i, _| {
+                if stiffness[i] > 0.0 {
+                    (before[i] * from[i] + after[i] * to[i]) / stiffness[i]
+                } else {
+                    to[i]
+                }
+            })
+        };
         Driving {
             torque: self.old.torque * (1.0 - s) + new.torque,
             impedance: Impedance {
                 stiffness,
                 damping: from.damping * (1.0 - s) + to.damping * s,
-                target: JointVector::from_fn(|i, _| {
-                    if stiffness[i] > 0.0 {
-                        (before[i] * from.target[i] + after[i] * to.target[i]) / stiffness[i]
-                    } else {
-                        to.target[i]
-                    }
-                }),
+                target: mean(&from.target, &to.target),
+                rate: mean(&from.rate, &to.rate),
             },
         }
     }
@@ -120,6 +141,7 @@ mod tests {
             stiffness: JointVector::repeat(stiffness),
             damping: JointVector::repeat(damping),
             target: JointVector::repeat(target),
+            rate: JointVector::zeros(),
         };
         let old = Driving {
             torque: JointVector::repeat(10.0),
@@ -131,7 +153,7 @@ mod tests {
             dq: JointVector::repeat(0.3),
         };
         let total = |driving: &Driving| (driving.torque + driving.impedance.torque(&state))[2];
-        let mut passage = Passage::none(50);
+        let mut passage = Passage::none(50, 0.002);
         assert_eq!(passage.blend(&new), new);
         passage.begin(old, JointVector::zeros());
         for cycle in 1..=50 {
@@ -145,16 +167,16 @@ mod tests {
 
     #[test]
     fn moving_targets_come_to_rest() {
-        let mut passage = Passage::none(50);
+        let mut passage = Passage::none(50, 0.002);
         passage.begin(
             Driving::by_springs(Impedance::none()),
-            JointVector::repeat(1e-3),
+            JointVector::repeat(0.5),
         );
         let steps: Vec<_> = (0..60).map(|_| passage.next()[0]).collect();
         assert!(steps.windows(2).all(|pair| pair[1] <= pair[0]));
-        assert!(steps[0] > 0.99e-3 && steps[49] == 0.0 && steps[59] == 0.0);
+        assert!(steps[0] > 0.499 && steps[49] == 0.0 && steps[59] == 0.0);
         // Half of the way at full speed.
-        let way: f64 = steps.iter().sum();
+        let way: f64 = steps.iter().sum::<f64>() * 0.002;
         assert!((way - 0.0245).abs() < 1e-4, "{way}");
     }
 }

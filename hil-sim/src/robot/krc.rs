@@ -53,6 +53,8 @@ pub struct Krc {
     hold: JointVector<f64>,
     /// Position commanded in all \[rad\].
     commanded: JointVector<f64>,
+    /// The same at the start of the cycle.
+    from: JointVector<f64>,
     /// What it moves per cycle \[rad\].
     rate: JointVector<f64>,
     /// Cycles since the order that acts came in.
@@ -94,6 +96,7 @@ impl Krc {
             scheme: options.scheme,
             hold: *q0,
             commanded: *q0,
+            from: *q0,
             rate: JointVector::zeros(),
             age: 0,
             order: None,
@@ -102,7 +105,7 @@ impl Krc {
             refused: None,
             jumping: false,
             good: 0,
-            passage: Passage::none(cycles(options.fade_s, cycle_s)),
+            passage: Passage::none(cycles(options.fade_s, cycle_s), cycle_s),
             last: Driving::by_springs(Impedance::none()),
             answer_int: 10,
             left: false,
@@ -265,9 +268,9 @@ impl Krc {
                 added.void();
             }
         }
-        let moved = self.passage.next();
+        let resting = self.passage.next();
         if self.state == State::Monitor {
-            self.hold += moved;
+            self.hold += resting * self.cycle_s;
             self.commanded = self.hold;
         }
         let wanted = match self.state {
@@ -275,11 +278,11 @@ impl Krc {
                 now,
                 &JointVector::repeat(self.options.stiffness),
                 &JointVector::repeat(self.options.damping),
-                &self.hold,
             )),
             State::Command => self.ordered(now, added),
         };
         self.last = self.passage.blend(&wanted);
+        self.from = self.commanded;
         self.consider(now);
         self.refused = None;
         self.last
@@ -324,10 +327,15 @@ impl Krc {
         let follows = |i: usize| stiffness[i] > 0.0 && self.scheme == Scheme::Position;
         let rate = JointVector::from_fn(|i, _| {
             let bound = self.reach[i];
-            if follows(i) { self.rate[i].clamp(-bound, bound) } else { 0.0 }
+            if follows(i) {
+                self.rate[i].clamp(-bound, bound) / self.cycle_s
+            } else {
+                0.0
+            }
         });
         self.hold =
-            JointVector::from_fn(|i, _| if follows(i) { self.commanded[i] } else { now.q[i] });
+            JointVector::from_fn(|i, _| if follows(i) { self.from[i] } else { now.q[i] });
+        self.from = self.hold;
         self.passage.begin(self.last, rate);
         self.leave_command();
         self.fallbacks += u64::from(fault);
@@ -364,7 +372,6 @@ impl Krc {
                     now,
                     &JointVector::repeat(self.options.position_stiffness),
                     &JointVector::repeat(1.0),
-                    &self.commanded,
                 ),
             },
             Scheme::JointImpedance => Driving {
@@ -375,7 +382,6 @@ impl Krc {
                     &order
                         .damping
                         .unwrap_or(JointVector::repeat(self.options.damping)),
-                    &self.commanded,
                 ),
             },
         }
@@ -387,20 +393,21 @@ impl Krc {
             .unwrap_or(JointVector::repeat(self.options.stiffness))
     }
 
-    /// Springs K to `target` with D_i = 2 d_i sqrt(K_i M_ii).
+    /// Springs K to the commanded position, which moves evenly during the cycle,
+    /// with D_i = 2 d_i sqrt(K_i M_ii).
     fn springs(
         &self,
         now: &Now<'_>,
         stiffness: &JointVector<f64>,
         ratio: &JointVector<f64>,
-        target: &JointVector<f64>,
     ) -> Impedance {
         Impedance {
             stiffness: *stiffness,
             damping: JointVector::from_fn(|i, _| {
                 2.0 * ratio[i] * (stiffness[i] * now.mass_matrix[(i, i)]).sqrt()
             }),
-            target: *target,
+            target: self.from,
+            rate: (self.commanded - self.from) / self.cycle_s,
         }
     }
 
@@ -420,7 +427,7 @@ impl Krc {
             return;
         }
         self.good += 1;
-        if self.good < cycles(self.options.good_for_s, self.cycle_s) {
+        if self.good <= cycles(self.options.good_for_s, self.cycle_s) {
             return;
         }
         self.good = 0;
