@@ -2,7 +2,7 @@
 //! one datagram out.
 //!
 //! Pure code: no socket, no clock, no allocation. Counters and the period in the
-//! datagrams are the time, so the same [`Session`] runs behind a UDP socket, inside
+//! datagrams are the time, so the same [`session::Session`] runs behind a UDP socket, inside
 //! the simulator, and on a microcontroller.
 //!
 //! - [`guide`]: from the wanted motion to the reference of a cycle, with

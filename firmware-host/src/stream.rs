@@ -1,7 +1,7 @@
 //! References that arrive over UDP, for a planner in another process.
 //!
 //! One datagram is one reference, as text: for each level in priority order nine
-//! numbers, x y z [m], their velocities [m/s] and accelerations [m/s2], base-plate
+//! numbers, x y z \[m\], their velocities \[m/s\] and accelerations \[m/s2\], base-plate
 //! frame, separated by spaces or commas. Levels may be left out at the end: then
 //! they keep their last reference.
 //!
