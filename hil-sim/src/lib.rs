@@ -12,6 +12,7 @@ pub mod controllers;
 pub mod experiment;
 pub mod explain;
 pub mod invalid;
+pub mod loopback;
 pub mod metrics;
 pub mod names;
 pub mod output;

@@ -11,6 +11,8 @@ use super::options::Scheme;
 use super::order::wire;
 use super::rating::Quality;
 use super::{FaultCounts, Named, Robot, Seen, Summary, Verdict, summary};
+use crate::names::MeasurementKind;
+use crate::summary::Conditions;
 
 /// Power bits with the drives on: one per joint.
 const POWER: u16 = 0x7F;
@@ -23,10 +25,7 @@ impl Robot {
         let jacobian = self.model.jacobian(q);
         let wrench = RobotModel::flange_wrench(&jacobian, &seen.contact);
         let frame = self.model.frame(q);
-        let (before, total) = (
-            self.model.frame(&own),
-            self.model.frame(&(own + offset)),
-        );
+        let (before, total) = (self.model.frame(&own), self.model.frame(&(own + offset)));
         let averages = self.rating.statistics();
         let mut user = UserData::default();
         user.int[1] = self.krc.answer_int();
@@ -86,9 +85,13 @@ impl Robot {
         let setup = &self.setup;
         let scenario = &setup.scenario;
         let levels = self.metrics.levels(&scenario.levels);
-        let dead_cycles = setup.plant_options.dead_cycles;
-        let acceptance =
-            summary::judge(scenario, setup.plant, setup.contacts, dead_cycles, &levels);
+        let conditions = Conditions {
+            plant: setup.plant,
+            contacts: setup.contacts,
+            measurement: MeasurementKind::Fri,
+            dead_cycles: setup.plant_options.dead_cycles,
+        };
+        let acceptance = summary::judge(scenario, &conditions, &levels);
         let (verdict, reason) = match &self.stop {
             Some(reason) => (Verdict::Stopped, Some(reason.clone())),
             None => match summary::verdict(&acceptance) {
@@ -116,10 +119,7 @@ impl Robot {
             residual: self.metrics.residual(),
             torque: self.metrics.torque(),
             joints: self.metrics.joints(),
-            hand_force_max_n: self
-                .contacts
-                .has_hands()
-                .then(|| self.metrics.hand_force()),
+            hand_force_max_n: self.contacts.has_hands().then(|| self.metrics.hand_force()),
             limits: self.metrics.limits(),
             faults: FaultCounts::default(),
             link: Some(self.counters.figures(&self.krc, &self.rating)),
@@ -139,7 +139,13 @@ fn relative(first: &model::Frame, second: &model::Frame) -> model::Frame {
     };
     let ((r1, p1), (r2, p2)) = (parts(first), parts(second));
     let (r, p) = (r1.transpose() * r2, r1.transpose() * (p2 - p1));
-    std::array::from_fn(|i| if i % 4 == 3 { p[i / 4] } else { r[(i / 4, i % 4)] })
+    std::array::from_fn(|i| {
+        if i % 4 == 3 {
+            p[i / 4]
+        } else {
+            r[(i / 4, i % 4)]
+        }
+    })
 }
 
 fn rows_of_jacobian(jacobian: &Jacobian) -> [[f32; DOF]; 6] {

@@ -82,7 +82,11 @@ fn the_position_scheme_follows_a_ramp() {
         };
         link.run(500, &mut ramp);
         let state = *link.robot.plant().state();
-        assert!((state.dq - JointVector::repeat(0.2)).amax() < 0.02, "{}", state.dq);
+        assert!(
+            (state.dq - JointVector::repeat(0.2)).amax() < 0.02,
+            "{}",
+            state.dq
+        );
         // Behind by 2 sqrt(M / k) times the speed, and by the weight not known.
         let mut off = JointVector::zeros();
         link.run(1, |msr, command| {
