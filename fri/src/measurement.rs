@@ -365,8 +365,7 @@ impl Measurement {
     #[must_use]
     pub fn parse<T: AsRef<[u8]>>(packet: &MeasurementPacket<T>) -> Self {
         let bytes = packet.slice();
-        let [period_s, command_period_s, safety_limits] =
-            f32s_at(bytes, field::PERIODS_AND_LIMITS);
+        let [period_s, command_period_s, safety_limits] = f32s_at(bytes, field::PERIODS_AND_LIMITS);
         let [answer_rate, latency_s, jitter_s, miss_rate] = f32s_at(bytes, field::STATISTICS);
         let [timestamp_s] = f32s_at(bytes, field::TIMESTAMP);
         Self {

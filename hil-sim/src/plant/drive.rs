@@ -122,7 +122,11 @@ fn rigid(h: f64, torque: &JointVector<f64>, friction: &Friction) -> Elimination 
 impl PlantModel {
     /// (M + diag(armature))^-1 \[rad/s2 per Nm\] at posture `q` \[rad\], by the
     /// accelerations that unit torques cause. For a weightless arm.
-    pub(crate) fn response(&self, q: &JointVector<f64>, armature: &JointVector<f64>) -> JointMatrix<f64> {
+    pub(crate) fn response(
+        &self,
+        q: &JointVector<f64>,
+        armature: &JointVector<f64>,
+    ) -> JointMatrix<f64> {
         let rest = JointVector::zeros();
         let mut response = JointMatrix::zeros();
         for i in 0..DOF {

@@ -154,7 +154,9 @@ mod tests {
         impedance.rate.fill(0.2);
         for cycle in 0..500 {
             let weight = plant.model().gravity_torque(&plant.state().q);
-            plant.advance_with(f64::from(cycle) * 0.002, &weight, &impedance, |_, _, _| NONE);
+            plant.advance_with(f64::from(cycle) * 0.002, &weight, &impedance, |_, _, _| {
+                NONE
+            });
             impedance = impedance.after(0.002);
         }
         let off = plant.state().dq - impedance.rate;

@@ -36,8 +36,8 @@ pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
 pub use mismatch::mismatched;
 pub use model::PlantModel;
-pub(crate) use options::DeadTime;
 pub use noise::Rng;
+pub(crate) use options::DeadTime;
 pub use options::{DEAD_CYCLES_MAX, PlantOptions};
 pub use sensor::Sensor;
 

@@ -259,7 +259,11 @@ impl Krc {
     /// `added` delays the added torque of orders by the dead time; it is told
     /// when what is under way is void.
     pub fn cycle(&mut self, now: &Now<'_>, added: &mut impl Added) -> Driving {
-        self.age = if self.fresh { 0 } else { self.age.saturating_add(1) };
+        self.age = if self.fresh {
+            0
+        } else {
+            self.age.saturating_add(1)
+        };
         self.fresh = false;
         if self.state == State::Command {
             self.bridge();
@@ -333,8 +337,7 @@ impl Krc {
                 0.0
             }
         });
-        self.hold =
-            JointVector::from_fn(|i, _| if follows(i) { self.from[i] } else { now.q[i] });
+        self.hold = JointVector::from_fn(|i, _| if follows(i) { self.from[i] } else { now.q[i] });
         self.from = self.hold;
         self.passage.begin(self.last, rate);
         self.leave_command();

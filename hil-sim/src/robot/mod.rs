@@ -271,7 +271,8 @@ impl Robot {
         }
         let behind = self.cycle - place;
         let latency_s = behind as f64 * self.cycle_s + since_cycle_start_s;
-        self.inbox.accepted(place, (behind == 0).then_some(latency_s));
+        self.inbox
+            .accepted(place, (behind == 0).then_some(latency_s));
         self.counters.answer(latency_s, behind == 0);
         Answer::Accepted
     }
@@ -393,13 +394,11 @@ impl Robot {
         let measured = self.plant.measure();
         let (t_s, robot_t) = (self.contact_time_s(), self.robot_time_s());
         self.contacts.take_hold(t_s, self.plant.model(), &truth);
-        let (scripted, hand_force_n) =
-            self.contacts.joint_torque(t_s, self.plant.model(), &truth);
+        let (scripted, hand_force_n) = self.contacts.joint_torque(t_s, self.plant.model(), &truth);
         let model = self.plant.model();
-        let contact = self
-            .typed
-            .iter()
-            .fold(scripted, |sum, push| sum + push.torque(robot_t, model, &truth));
+        let contact = self.typed.iter().fold(scripted, |sum, push| {
+            sum + push.torque(robot_t, model, &truth)
+        });
         let seen = Seen {
             truth,
             measured,
@@ -449,6 +448,18 @@ impl Robot {
     #[must_use]
     pub fn has_begun(&self) -> bool {
         self.inbox.has_begun()
+    }
+
+    /// Whether command state was never reached.
+    #[must_use]
+    pub fn has_never_commanded(&self) -> bool {
+        self.krc.entries() == 0
+    }
+
+    /// How good the link is.
+    #[must_use]
+    pub fn quality(&self) -> Quality {
+        self.rating.quality()
     }
 
     /// State of the link.

@@ -23,10 +23,7 @@ impl Robot {
         let jacobian = self.model.jacobian(q);
         let wrench = RobotModel::flange_wrench(&jacobian, &seen.contact);
         let frame = self.model.frame(q);
-        let (before, total) = (
-            self.model.frame(&own),
-            self.model.frame(&(own + offset)),
-        );
+        let (before, total) = (self.model.frame(&own), self.model.frame(&(own + offset)));
         let averages = self.rating.statistics();
         let mut user = UserData::default();
         user.int[1] = self.krc.answer_int();
@@ -116,10 +113,7 @@ impl Robot {
             residual: self.metrics.residual(),
             torque: self.metrics.torque(),
             joints: self.metrics.joints(),
-            hand_force_max_n: self
-                .contacts
-                .has_hands()
-                .then(|| self.metrics.hand_force()),
+            hand_force_max_n: self.contacts.has_hands().then(|| self.metrics.hand_force()),
             limits: self.metrics.limits(),
             faults: FaultCounts::default(),
             link: Some(self.counters.figures(&self.krc, &self.rating)),
@@ -139,7 +133,13 @@ fn relative(first: &model::Frame, second: &model::Frame) -> model::Frame {
     };
     let ((r1, p1), (r2, p2)) = (parts(first), parts(second));
     let (r, p) = (r1.transpose() * r2, r1.transpose() * (p2 - p1));
-    std::array::from_fn(|i| if i % 4 == 3 { p[i / 4] } else { r[(i / 4, i % 4)] })
+    std::array::from_fn(|i| {
+        if i % 4 == 3 {
+            p[i / 4]
+        } else {
+            r[(i / 4, i % 4)]
+        }
+    })
 }
 
 fn rows_of_jacobian(jacobian: &Jacobian) -> [[f32; DOF]; 6] {

@@ -106,10 +106,18 @@ impl Loop {
     /// Until command state, at most 300 cycles.
     pub fn enter(&mut self) {
         self.polite(300);
-        assert_eq!(self.robot.state(), hil_sim::robot::State::Command, "{:?}", self.robot.events());
+        assert_eq!(
+            self.robot.state(),
+            hil_sim::robot::State::Command,
+            "{:?}",
+            self.robot.events()
+        );
     }
 
     pub fn said(&self, text: &str) -> bool {
-        self.robot.events().iter().any(|event| event.text.contains(text))
+        self.robot
+            .events()
+            .iter()
+            .any(|event| event.text.contains(text))
     }
 }

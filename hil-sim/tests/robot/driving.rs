@@ -31,7 +31,13 @@ fn fallback_while_moving_has_no_torque_step_and_ends_at_rest() {
         assert!(speed > 0.3, "{speed}");
         link.step = 0.0;
         link.run(11, |_, _| false);
-        assert_eq!(link.robot.state(), State::Monitor);
+        let summary = link.robot.summary();
+        assert_eq!(
+            link.robot.state(),
+            State::Monitor,
+            "{:?} {speed}",
+            summary.reason
+        );
         link.run(1000, |_, _| false);
         assert!(link.step < STEP_MAX, "{plant:?}: {}", link.step);
         let figures = link.robot.summary().link.expect("a link");
@@ -82,7 +88,11 @@ fn the_position_scheme_follows_a_ramp() {
         };
         link.run(500, &mut ramp);
         let state = *link.robot.plant().state();
-        assert!((state.dq - JointVector::repeat(0.2)).amax() < 0.02, "{}", state.dq);
+        assert!(
+            (state.dq - JointVector::repeat(0.2)).amax() < 0.02,
+            "{}",
+            state.dq
+        );
         // Behind by 2 sqrt(M / k) times the speed, and by the weight not known.
         let mut off = JointVector::zeros();
         link.run(1, |msr, command| {

@@ -16,7 +16,12 @@ fn a_stranger_gets_into_command_state() {
             link.polite(199);
             assert_eq!(link.robot.state(), State::Monitor);
             link.polite(1);
-            assert_eq!(link.robot.state(), State::Command, "{:?}", link.robot.events());
+            assert_eq!(
+                link.robot.state(),
+                State::Command,
+                "{:?}",
+                link.robot.events()
+            );
             assert_eq!(link.robot.time_s(), None);
             let msr = measurement(&mut link.robot);
             assert_eq!(msr.drives.power, 0x7F);
@@ -41,7 +46,12 @@ fn mirroring_the_measured_position_is_close_enough() {
             command.joint_position = msr.joint_position;
             true
         });
-        assert_eq!(link.robot.state(), State::Command, "{seed}: {:?}", link.robot.events());
+        assert_eq!(
+            link.robot.state(),
+            State::Command,
+            "{seed}: {:?}",
+            link.robot.events()
+        );
     }
 }
 
@@ -58,7 +68,13 @@ fn every_check_bars_the_way_with_its_message() {
             "addJntTrq of joint 4 is -1.25 Nm; allowed: 1.00",
         ),
         (
-            |n, command| command.flags.0 = if (n / 50).is_multiple_of(2) { 0x35 } else { 0x15 },
+            |n, command| {
+                command.flags.0 = if (n / 50).is_multiple_of(2) {
+                    0x35
+                } else {
+                    0x15
+                }
+            },
             "cmdFlags changed while waiting",
         ),
     ];
@@ -128,12 +144,18 @@ fn the_handshake_waits_for_the_client() {
     assert!(link.said("strategy 20 (Cartesian impedance) is not supported"));
     link.run(150, ask(30, 1));
     assert_eq!((link.robot.state(), krc(&mut link)), (State::Command, 1));
-    assert_eq!(measurement(&mut link.robot).drives.control, fri::ControlScheme::JointImpedance);
+    assert_eq!(
+        measurement(&mut link.robot).drives.control,
+        fri::ControlScheme::JointImpedance
+    );
     link.run(1, ask(30, 0));
     assert_eq!((link.robot.state(), krc(&mut link)), (State::Monitor, 0));
     link.run(150, ask(10, 1));
     assert_eq!((link.robot.state(), krc(&mut link)), (State::Command, 1));
-    assert_eq!(measurement(&mut link.robot).drives.control, fri::ControlScheme::Position);
+    assert_eq!(
+        measurement(&mut link.robot).drives.control,
+        fri::ControlScheme::Position
+    );
     let summary = link.robot.summary().link.expect("a link");
     assert_eq!((summary.fallbacks, summary.recoveries), (0, 1));
 }

@@ -88,7 +88,12 @@ fn the_speed_of_the_commanded_position_is_limited() {
         command.joint_position = *goal;
         true
     });
-    assert_eq!(link.robot.state(), State::Command, "{:?}", link.robot.events());
+    assert_eq!(
+        link.robot.state(),
+        State::Command,
+        "{:?}",
+        link.robot.events()
+    );
     assert_eq!(link.robot.summary().link.expect("a link").rejected.jump, 0);
     link.run(5, |msr, command| {
         stiff(command);
