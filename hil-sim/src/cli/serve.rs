@@ -181,6 +181,8 @@ impl ServeOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
+        let failed = |error| Invalid::line(error).within(service.remote);
+        let mut client = service.open().map_err(failed)?;
         let mut files = Files::create(&out, &scenario, setup.contacts)?;
         eprintln!(
             "robot at the start posture, measurements go to {}; lines on standard input: push, \
@@ -189,10 +191,10 @@ impl ServeOptions {
         );
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
-        let end = service.run(&mut robot, &mut operator, |instant| {
+        let end = service.run(&mut robot, &mut operator, &mut client, |instant| {
             files.push(&scenario, instant)
         });
-        match end.map_err(|error| Invalid::line(error).within(service.remote))? {
+        match end.map_err(failed)? {
             End::Finished => (),
             End::NoClient(why) => {
                 eprintln!("error: {why}");

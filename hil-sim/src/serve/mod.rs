@@ -42,8 +42,16 @@ pub enum End {
 }
 
 impl Service {
-    /// Serves `robot` until its scenario is over. Every cycle of scenario time goes
-    /// to `sink`.
+    /// The socket for this service.
+    ///
+    /// # Errors
+    /// The port is taken, or the address cannot be reached.
+    pub fn open(&self) -> io::Result<Udp> {
+        Udp::open(self.remote, self.local_port)
+    }
+
+    /// Serves `robot` to `client` until its scenario is over. Every cycle of scenario
+    /// time goes to `sink`.
     ///
     /// # Errors
     /// The socket's, and those of `sink`.
@@ -51,13 +59,13 @@ impl Service {
         &self,
         robot: &mut Robot,
         operator: &mut Operator,
+        client: &mut Udp,
         sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
     ) -> io::Result<End> {
-        let mut client = Udp::open(self.remote, self.local_port)?;
         if self.lockstep {
-            self.lockstep(robot, operator, &mut client, sink)
+            self.lockstep(robot, operator, client, sink)
         } else {
-            paced::run(self, robot, operator, &mut client, sink)
+            paced::run(self, robot, operator, client, sink)
         }
     }
 
