@@ -1,6 +1,8 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
+mod files;
 mod run;
+mod serve;
 pub mod usage;
 
 use std::io::{self, IsTerminal, Read, Write};
@@ -14,6 +16,7 @@ use crate::invalid::Invalid;
 use crate::scenario::Scenario;
 
 pub use run::RunOptions;
+pub use serve::ServeOptions;
 
 /// Exit code of anything that cannot be used.
 const USAGE: u8 = 2;
@@ -28,7 +31,7 @@ const USAGE: u8 = 2;
     name = "hil-sim",
     version,
     after_help = "Exit codes: 0 pass, 1 an acceptance limit failed, \
-2 usage or configuration error, 3 stopped by safety."
+2 usage or configuration error, 3 stopped by safety or by hand, 4 no client."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -39,6 +42,8 @@ struct Cli {
 enum Command {
     /// Run a scenario and judge it: report, summary, trace and figures in the output folder
     Run(Box<RunOptions>),
+    /// Be the robot: FRI over UDP, for a client that runs elsewhere
+    Serve(Box<ServeOptions>),
     /// All experiments of the paper: every claim with a number and a verdict
     Paper {
         /// Output folder
@@ -59,7 +64,7 @@ enum Command {
 }
 
 /// What the program can be asked for.
-const COMMANDS: &[&str] = &["run", "paper", "scenario", "explain"];
+const COMMANDS: &[&str] = &["run", "serve", "paper", "scenario", "explain"];
 
 /// Runs the program with the arguments of the process.
 #[must_use]
@@ -71,6 +76,7 @@ pub fn main() -> ExitCode {
     let outcome = match cli.command {
         None => run::comparison(),
         Some(Command::Run(options)) => options.run(),
+        Some(Command::Serve(options)) => options.run(),
         Some(Command::Paper { out }) => crate::paper::run(&out),
         Some(Command::Scenario { name }) => Scenario::built_in_text(&name).and_then(print),
         Some(Command::Explain { file }) => explain_file(&file).and_then(|text| print(&text)),

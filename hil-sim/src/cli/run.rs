@@ -7,16 +7,14 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::files::Files;
 use crate::controllers::ControllerKind;
 use crate::experiment::Experiment;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{MeasurementKind, Named, NullStiffness, Switch};
-use crate::output::{self, Draft};
 use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantOptions};
-use crate::report::{self, Recording};
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
-use crate::trace::Trace;
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -63,12 +61,12 @@ pub struct RunOptions {
     out: Option<PathBuf>,
 }
 
-fn seed(text: &str) -> Result<u64, String> {
+pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| format!("whole numbers 0 to {}", u64::MAX))
 }
 
-fn dead_cycles(text: &str) -> Result<usize, String> {
+pub(super) fn dead_cycles(text: &str) -> Result<usize, String> {
     let allowed = || format!("whole numbers 0 to {DEAD_CYCLES_MAX}");
     text.parse()
         .ok()
@@ -76,7 +74,7 @@ fn dead_cycles(text: &str) -> Result<usize, String> {
         .ok_or_else(allowed)
 }
 
-fn number(text: &str) -> Result<f64, String> {
+pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "a number".to_string())
 }
 
@@ -93,7 +91,7 @@ impl RunOptions {
             .clone()
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
         let summary = execute(&experiment, &out, Some(&command))?;
-        let mut text = heading(&experiment);
+        let mut text = experiment_heading(&experiment);
         text += &table(&[&summary]);
         text += &footer(&summary, &out);
         super::print(&text)?;
@@ -162,7 +160,7 @@ impl RunOptions {
     }
 }
 
-fn switch(option: &str, value: &str) -> Result<bool, Invalid> {
+pub(super) fn switch(option: &str, value: &str) -> Result<bool, Invalid> {
     Ok(Switch::from_name(value)
         .map_err(|error| error.within(option))?
         .0)
@@ -197,7 +195,7 @@ pub fn comparison() -> Result<u8, Invalid> {
         };
         rows.push(execute(&other, &out.join(controller.name()), None)?);
     }
-    let mut text = heading(&product);
+    let mut text = experiment_heading(&product);
     text += &table(&rows.iter().collect::<Vec<_>>());
     text += &footer(&summary, &out);
     text += "Only hierarchical has to pass: the others are there for comparison.\n";
@@ -209,39 +207,18 @@ pub fn comparison() -> Result<u8, Invalid> {
 fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result<Summary, Invalid> {
     let scenario = &experiment.scenario;
     let controller = experiment.controller()?;
-    output::prepare(out)?;
-    let failed = |error: io::Error| Invalid::line(error).within(out.display());
-    let mut trace = Trace::new(Draft::create(out, "trace.csv")?, scenario).map_err(failed)?;
-    let mut recording = Recording::new(scenario, experiment.contacts);
+    let mut files = Files::create(out, scenario, experiment.contacts)?;
 
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
         &controller,
-        |instant| {
-            recording.record(scenario, instant);
-            trace.push(instant)
-        },
+        |instant| files.push(scenario, instant),
         |share| progress.show(share),
     );
     progress.clear();
-    let summary = written.map_err(failed)?;
-    recording.finish();
+    let summary = written.map_err(|error| files.failed(error))?;
     warn_of_damping(experiment, &controller);
-
-    let run = report::Run {
-        null_stiffness: experiment.null_stiffness,
-        command,
-        ..report::Run::new(&summary, scenario, &recording)
-    };
-    let figures = out.join("figures");
-    output::prepare(&figures)?;
-    for (name, drawing) in report::figures(&run) {
-        output::write(&figures, &name, &drawing)?;
-    }
-    output::write(out, "report.html", &report::run_report(&run))?;
-    trace.finish().commit().map_err(failed)?;
-    let json = serde_json::to_string_pretty(&summary).map_err(Invalid::line)?;
-    output::write(out, "summary.json", &(json + "\n"))?;
+    files.finish(scenario, &summary, experiment.null_stiffness, command)?;
     Ok(summary)
 }
 
@@ -266,20 +243,28 @@ fn warn_of_damping(
     }
 }
 
-fn heading(experiment: &Experiment) -> String {
-    let scenario = &experiment.scenario;
+fn experiment_heading(experiment: &Experiment) -> String {
+    heading(
+        &experiment.scenario,
+        experiment.plant,
+        experiment.contacts,
+        experiment.seed,
+    )
+}
+
+pub(super) fn heading(scenario: &Scenario, plant: PlantKind, contacts: bool, seed: u64) -> String {
     format!(
         "{}: {} plant, contacts {}, seed {}, {} s in cycles of {} ms\n\n",
         scenario.name,
-        experiment.plant.name(),
-        Switch(experiment.contacts).name(),
-        experiment.seed,
+        plant.name(),
+        Switch(contacts).name(),
+        seed,
         scenario.duration_s,
         scenario.cycle_ms,
     )
 }
 
-fn footer(summary: &Summary, out: &Path) -> String {
+pub(super) fn footer(summary: &Summary, out: &Path) -> String {
     let reason = summary
         .reason
         .as_ref()
@@ -292,7 +277,7 @@ fn footer(summary: &Summary, out: &Path) -> String {
 }
 
 /// One row per run and level.
-fn table(runs: &[&Summary]) -> String {
+pub(super) fn table(runs: &[&Summary]) -> String {
     let mut text = format!(
         "{:<28} {:<26} {:>9} {:>9} {:>11} {:>12}  {}\n",
         "controller", "level", "rms", "max", "plateau", "r error Nm", "verdict"
@@ -322,7 +307,7 @@ fn table(runs: &[&Summary]) -> String {
     text
 }
 
-fn figure(value: Option<f64>) -> String {
+pub(super) fn figure(value: Option<f64>) -> String {
     fn shown(value: impl Display) -> String {
         value.to_string()
     }

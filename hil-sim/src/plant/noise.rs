@@ -13,6 +13,10 @@ pub mod stream {
     pub const MISMATCH: u64 = 1;
     /// Torque noise.
     pub const TORQUE: u64 = 2;
+    /// Faults of the link on the way to the client.
+    pub const TO_CLIENT: u64 = 3;
+    /// Faults of the link on the way to the robot.
+    pub const TO_ROBOT: u64 = 4;
 }
 
 /// A stream of random numbers.

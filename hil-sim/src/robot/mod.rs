@@ -450,6 +450,18 @@ impl Robot {
         self.inbox.has_begun()
     }
 
+    /// Whether command state was never reached.
+    #[must_use]
+    pub fn has_never_commanded(&self) -> bool {
+        self.krc.entries() == 0
+    }
+
+    /// How good the link is.
+    #[must_use]
+    pub fn quality(&self) -> Quality {
+        self.rating.quality()
+    }
+
     /// State of the link.
     #[must_use]
     pub fn state(&self) -> State {

@@ -1,0 +1,330 @@
+//! `hil-sim serve`: the robot's side on a socket.
+
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::files::Files;
+use super::run::{dead_cycles, footer, heading, number, seed, switch, table};
+use crate::invalid::{Invalid, in_range, positive};
+use crate::link::Fault;
+use crate::names::{Named, NullStiffness};
+use crate::plant::{PlantKind, PlantOptions};
+use crate::robot::{
+    Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
+};
+use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use crate::serve::{End, Operator, Service};
+
+/// Exit code when no client came, or none that could be let into command state.
+const NO_CLIENT: u8 = 4;
+
+/// Port of the client's side.
+const PORT: u16 = 49_938;
+
+/// Cycles that the protocol has \[ms\].
+const FRI_CYCLE_MIN_MS: f64 = 1.0;
+
+/// Options of `serve`.
+#[derive(Clone, Debug, Args)]
+pub struct ServeOptions {
+    /// Built-in scenario or TOML file: start, contacts, what is judged
+    #[arg(long, default_value = "two-level")]
+    scenario: String,
+    /// ideal, realistic
+    #[arg(long, default_value = "realistic")]
+    plant: String,
+    /// on, off
+    #[arg(long, default_value = "on")]
+    contacts: String,
+    /// Seed of mismatch, noise and faults
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    seed: u64,
+    /// Where the client is [default: 127.0.0.1:49938]
+    #[arg(long)]
+    remote: Option<String>,
+    /// Short for --remote 127.0.0.1:PORT
+    #[arg(long)]
+    port: Option<String>,
+    /// Own port [default: any]
+    #[arg(long, default_value = "0")]
+    local_port: String,
+    /// Cycle in ms, 1 to 20 [default: the scenario's]
+    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    cycle_ms: Option<f64>,
+    /// Length in s, up to 3600 [default: the scenario's]
+    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    duration: Option<f64>,
+    /// Cycles between the added torque and its effect, 0 to 8
+    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    dead_cycles: usize,
+    /// Virtual time: as fast as both sides can, the same bytes every time
+    #[arg(long)]
+    lockstep: bool,
+    /// Who decides on command state: auto, handshake (the client, by user data)
+    #[arg(long, default_value = "auto")]
+    krl: String,
+    /// joint-impedance, position
+    #[arg(long, default_value = "joint-impedance")]
+    scheme: String,
+    /// What the robot adds to the torque itself: gravity, gravity-coriolis
+    #[arg(long, default_value = "gravity")]
+    robot_adds: String,
+    /// What goes wrong on the link, DIR:KIND=VALUE[@FROM-TO]; DIR to-client, to-robot,
+    /// both; KIND drop=P duplicate=P reorder=P delay=MS jitter=MS corrupt=P burst=PxN
+    /// freeze; FROM-TO in s of the scenario. May be given more than once
+    #[arg(long)]
+    fault: Vec<String>,
+    /// Scenario time during which the drives are off, FROM-TO in s
+    #[arg(long)]
+    drives_off: Option<String>,
+    /// Time to wait for the first answer, and then for command state, s
+    #[arg(long, default_value = "60", value_parser = number, allow_negative_numbers = true)]
+    wait: f64,
+    #[command(flatten)]
+    thresholds: Thresholds,
+    /// Output folder [default: out/serve-SCENARIO]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// When the robot is content.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Thresholds")]
+struct Thresholds {
+    /// Least share of answers in time for quality perfect
+    #[arg(long, default_value = "0.99", value_parser = number, allow_negative_numbers = true)]
+    perfect_rate: f64,
+    /// ... for quality ok
+    #[arg(long, default_value = "0.95", value_parser = number, allow_negative_numbers = true)]
+    ok_rate: f64,
+    /// ... for quality bad
+    #[arg(long, default_value = "0.8", value_parser = number, allow_negative_numbers = true)]
+    bad_rate: f64,
+    /// Largest jitter for quality perfect, in cycles
+    #[arg(long, default_value = "0.25", value_parser = number, allow_negative_numbers = true)]
+    perfect_jitter: f64,
+    /// Missing answers in a row that are borne
+    #[arg(long, default_value = "10", value_parser = number, allow_negative_numbers = true)]
+    misses: f64,
+    /// Time with quality ok before command state, s
+    #[arg(long, default_value = "0.2", value_parser = number, allow_negative_numbers = true)]
+    good_for: f64,
+    /// Largest distance of jntPos from the commanded position on entry, mrad
+    #[arg(long, default_value = "5", value_parser = number, allow_negative_numbers = true)]
+    entry_mrad: f64,
+    /// Largest added torque on entry, Nm
+    #[arg(long, default_value = "1", value_parser = number, allow_negative_numbers = true)]
+    entry_nm: f64,
+    /// Speed limit of jntPos over the data sheet's
+    #[arg(long, default_value = "1.1", value_parser = number, allow_negative_numbers = true)]
+    speed_factor: f64,
+    /// Stiffness of the robot program, Nm/rad
+    #[arg(long, default_value = "1000", value_parser = number, allow_negative_numbers = true)]
+    krl_stiffness: f64,
+    /// Damping ratio of the robot program
+    #[arg(long, default_value = "0.7", value_parser = number, allow_negative_numbers = true)]
+    krl_damping: f64,
+}
+
+impl Thresholds {
+    fn options(&self) -> Result<RobotOptions, Invalid> {
+        let share = |name: &str, value| in_range(name, value, 0.0, 1.0);
+        let misses = in_range("--misses", self.misses, 0.0, 1e6)?;
+        if misses.fract() != 0.0 {
+            return Err(Invalid::new(
+                "--misses",
+                misses,
+                "whole numbers 0 to 1000000",
+            ));
+        }
+        let rating = RatingOptions {
+            perfect_rate: share("--perfect-rate", self.perfect_rate)?,
+            ok_rate: share("--ok-rate", self.ok_rate)?,
+            bad_rate: share("--bad-rate", self.bad_rate)?,
+            perfect_jitter: in_range("--perfect-jitter", self.perfect_jitter, 0.0, 1e3)?,
+            misses_max: misses as u32,
+        };
+        if !(rating.bad_rate <= rating.ok_rate && rating.ok_rate <= rating.perfect_rate) {
+            let given = format_args!(
+                "{} {} {}",
+                rating.bad_rate, rating.ok_rate, rating.perfect_rate
+            )
+            .to_string();
+            let thing = "--bad-rate, --ok-rate, --perfect-rate";
+            return Err(Invalid::new(thing, given, "not falling in this order"));
+        }
+        Ok(RobotOptions {
+            rating,
+            good_for_s: in_range("--good-for", self.good_for, 0.0, 60.0)?,
+            entry_position_rad: in_range("--entry-mrad", self.entry_mrad, 0.0, 1e3)? * 1e-3,
+            entry_torque_nm: in_range("--entry-nm", self.entry_nm, 0.0, 200.0)?,
+            speed_factor: positive("--speed-factor", self.speed_factor, 10.0)?,
+            stiffness: positive("--krl-stiffness", self.krl_stiffness, 2000.0)?,
+            damping: share("--krl-damping", self.krl_damping)?,
+            ..RobotOptions::default()
+        })
+    }
+}
+
+impl ServeOptions {
+    /// Serves, writes the files, prints the rows, gives the exit code.
+    ///
+    /// # Errors
+    /// Whatever was given that cannot be used, and the socket's errors.
+    pub fn run(&self) -> Result<u8, Invalid> {
+        let service = self.service()?;
+        let setup = self.setup()?;
+        let scenario = setup.scenario.clone();
+        let out = self
+            .out
+            .clone()
+            .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
+        let failed = |error| Invalid::line(error).within(service.remote);
+        let mut client = service.open().map_err(failed)?;
+        let mut files = Files::create(&out, &scenario, setup.contacts)?;
+        eprintln!(
+            "robot at the start posture, measurements go to {}; lines on standard input: push, \
+             release, drives off|on, quit",
+            service.remote
+        );
+        let mut operator = Operator::at_the_terminal();
+        let mut robot = Robot::new(setup);
+        let end = service.run(&mut robot, &mut operator, &mut client, |instant| {
+            files.push(&scenario, instant)
+        });
+        match end.map_err(failed)? {
+            End::Finished => (),
+            End::NoClient(why) => {
+                eprintln!("error: {why}");
+                return Ok(NO_CLIENT);
+            }
+        }
+        let summary = robot.summary();
+        let command = self.command();
+        files.finish(&scenario, &summary, NullStiffness::Normal, Some(&command))?;
+        let setup = robot.setup();
+        let mut text = heading(&scenario, setup.plant, setup.contacts, setup.seed);
+        text += &table(&[&summary]);
+        if let Some(link) = &summary.link {
+            text += &link_line(link);
+        }
+        text += &footer(&summary, &out);
+        super::print(&text)?;
+        Ok(summary.verdict.exit_code())
+    }
+
+    fn service(&self) -> Result<Service, Invalid> {
+        let port = |name: &str, text: &str, least: u16| {
+            let port = text.parse().ok().filter(|port| *port >= least);
+            port.ok_or_else(|| Invalid::new(name, text, format_args!("{least} to 65535")))
+        };
+        let remote = match (&self.remote, &self.port) {
+            (Some(_), Some(_)) => {
+                let allowed = "one of the two";
+                return Err(Invalid::new("--remote and --port", "both given", allowed));
+            }
+            (Some(remote), None) => address(remote)?,
+            (None, Some(text)) => SocketAddr::from(([127, 0, 0, 1], port("--port", text, 1)?)),
+            (None, None) => SocketAddr::from(([127, 0, 0, 1], PORT)),
+        };
+        let faults = self.fault.iter().map(|spec| spec.parse::<Fault>());
+        Ok(Service {
+            remote,
+            local_port: port("--local-port", &self.local_port, 0)?,
+            lockstep: self.lockstep,
+            faults: faults.collect::<Result<_, _>>()?,
+            wait_s: positive("--wait", self.wait, 1e6)?,
+        })
+    }
+
+    fn setup(&self) -> Result<RobotSetup, Invalid> {
+        let mut scenario = Scenario::find(&self.scenario)?;
+        if let Some(duration) = self.duration {
+            scenario.duration_s = positive("--duration", duration, DURATION_MAX_S)?;
+        }
+        let [_, max] = CYCLE_RANGE_MS;
+        let cycle = self.cycle_ms.unwrap_or(scenario.cycle_ms);
+        scenario.cycle_ms = in_range("--cycle-ms", cycle, FRI_CYCLE_MIN_MS, max)?;
+        if self.scheme == "cartesian-impedance" {
+            let allowed = "joint-impedance, position";
+            return Err(Invalid::new(
+                "--scheme",
+                "cartesian-impedance is not supported",
+                allowed,
+            ));
+        }
+        let drives_off_s = match &self.drives_off {
+            None => None,
+            Some(text) => Some(window(text)?),
+        };
+        Ok(RobotSetup {
+            scenario,
+            plant: PlantKind::from_name(&self.plant)?,
+            contacts: switch("--contacts", &self.contacts)?,
+            seed: self.seed,
+            plant_options: PlantOptions {
+                dead_cycles: self.dead_cycles,
+                ..PlantOptions::default()
+            },
+            options: RobotOptions {
+                krl: Krl::from_name(&self.krl)?,
+                scheme: Scheme::from_name(&self.scheme)?,
+                adds: RobotAdds::from_name(&self.robot_adds)?,
+                drives_off_s,
+                ..self.thresholds.options()?
+            },
+        })
+    }
+
+    /// The command line that repeats this run, with what is not at its default.
+    fn command(&self) -> String {
+        let own: Vec<_> = std::env::args().skip(1).collect();
+        format!("hil-sim {}", own.join(" "))
+    }
+}
+
+fn address(text: &str) -> Result<SocketAddr, Invalid> {
+    let wrong = || {
+        Invalid::new(
+            "--remote",
+            text,
+            "ADDRESS:PORT, such as 192.168.0.150:49938",
+        )
+    };
+    let mut all = text.to_socket_addrs().map_err(|_| wrong())?;
+    let found = all.find(|address| address.port() != 0 && !address.ip().is_unspecified());
+    found.ok_or_else(wrong)
+}
+
+fn window(text: &str) -> Result<[f64; 2], Invalid> {
+    let wrong = || Invalid::new("--drives-off", text, "FROM-TO in s, FROM below TO");
+    let (from, to) = text.split_once('-').ok_or_else(wrong)?;
+    let number = |text: &str| text.parse::<f64>().ok().filter(|t| *t >= 0.0 && *t < 1e6);
+    match (number(from), number(to)) {
+        (Some(from), Some(to)) if from < to => Ok([from, to]),
+        _ => Err(wrong()),
+    }
+}
+
+/// The link in one line.
+fn link_line(link: &LinkFigures) -> String {
+    let or_dash = |value: Option<f64>, digits: usize| {
+        value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
+    };
+    format!(
+        "link: {} % in command state, {} answers, {} missed, {} late, {} rejected, {} lost, \
+         latency {} ms, jitter {} ms, {} fallbacks, torque step {:.2} Nm\n",
+        or_dash(link.command_share.map(|share| share * 100.0), 1),
+        link.answers,
+        link.missed,
+        link.late,
+        link.rejected.total(),
+        link.lost,
+        or_dash(link.latency_ms.mean, 3),
+        or_dash(link.jitter_ms, 3),
+        link.fallbacks,
+        link.largest_torque_step_nm,
+    )
+}

@@ -1,0 +1,115 @@
+//! The robot on a socket: it sends first, to the one address it was told, and
+//! takes answers from there only.
+
+mod console;
+mod paced;
+mod udp;
+
+use std::io;
+use std::net::SocketAddr;
+use std::time::{Duration, Instant as Clock};
+
+pub use console::{Operator, Wish};
+pub use udp::Udp;
+
+use crate::experiment::Instant;
+use crate::link::{Fault, LockStep};
+use crate::robot::Robot;
+
+/// How a robot is served.
+#[derive(Clone, Debug)]
+pub struct Service {
+    /// Where the client is.
+    pub remote: SocketAddr,
+    /// Own port; 0: any.
+    pub local_port: u16,
+    /// Virtual time instead of the wall clock.
+    pub lockstep: bool,
+    /// What happens to datagrams.
+    pub faults: Vec<Fault>,
+    /// How long to wait for the first answer, and from there for command state
+    /// \[s\].
+    pub wait_s: f64,
+}
+
+/// How a service ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The scenario is over, or something stopped it.
+    Finished,
+    /// There was no client that came into command state; why.
+    NoClient(String),
+}
+
+impl Service {
+    /// The socket for this service.
+    ///
+    /// # Errors
+    /// The port is taken, or the address cannot be reached.
+    pub fn open(&self) -> io::Result<Udp> {
+        Udp::open(self.remote, self.local_port)
+    }
+
+    /// Serves `robot` to `client` until its scenario is over. Every cycle of scenario
+    /// time goes to `sink`.
+    ///
+    /// # Errors
+    /// The socket's, and those of `sink`.
+    pub fn run(
+        &self,
+        robot: &mut Robot,
+        operator: &mut Operator,
+        client: &mut Udp,
+        sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+    ) -> io::Result<End> {
+        if self.lockstep {
+            self.lockstep(robot, operator, client, sink)
+        } else {
+            paced::run(self, robot, operator, client, sink)
+        }
+    }
+
+    fn lockstep(
+        &self,
+        robot: &mut Robot,
+        operator: &mut Operator,
+        client: &mut Udp,
+        mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+    ) -> io::Result<End> {
+        let cycle_s = robot.setup().scenario.cycle_s();
+        let mut link = LockStep::new(&self.faults, cycle_s, robot.setup().seed);
+        let begun = Clock::now();
+        while !robot.is_finished() {
+            operator.attend(robot);
+            if let Some(end) = self.hopeless(robot, begun) {
+                return Ok(end);
+            }
+            link.cycle(robot, client)?;
+            if let Some(instant) = robot.advance() {
+                sink(&instant)?;
+            }
+        }
+        link.finish(robot, client)?;
+        Ok(End::Finished)
+    }
+
+    /// Whether to wait no longer: for the first answer by the wall clock, for
+    /// command state by the robot's.
+    fn hopeless(&self, robot: &Robot, begun: Clock) -> Option<End> {
+        if !robot.has_begun() {
+            let over = begun.elapsed() > Duration::from_secs_f64(self.wait_s);
+            let text = || format!("no answer from {} within {} s", self.remote, self.wait_s);
+            return over.then(|| End::NoClient(text()));
+        }
+        let over = robot.has_never_commanded() && robot.robot_time_s() > self.wait_s;
+        over.then(|| {
+            let last = robot.events().last().map(|event| event.text.clone());
+            let quality = robot.quality().name();
+            let why = last.unwrap_or_else(|| format!("link quality {quality}"));
+            End::NoClient(format!(
+                "no command state with {} within {} s: {why}",
+                self.remote, self.wait_s
+            ))
+        })
+    }
+}

@@ -1,0 +1,122 @@
+//! The client at the other end of a datagram socket.
+
+use std::io::{self, ErrorKind};
+use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
+use std::time::{Duration, Instant};
+
+use crate::link::{Expect, Peer};
+
+/// How long a client may take to answer in lock-step before it counts as gone.
+pub const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Between first measurements while nobody answers.
+pub const RESEND: Duration = Duration::from_millis(50);
+
+/// How long answers to damaged measurements are waited for.
+const PERHAPS: Duration = Duration::from_millis(50);
+
+/// How long answers that should not come are waited for.
+const NOTHING: Duration = Duration::from_millis(5);
+
+/// More than any datagram of the protocol.
+const BUFFER: usize = 2048;
+
+/// A socket that is connected to one client: the system passes datagrams of
+/// nobody else.
+pub struct Udp {
+    socket: UdpSocket,
+    buffer: [u8; BUFFER],
+}
+
+impl Udp {
+    /// A socket at `local_port` (0: any) for the client at `remote`.
+    ///
+    /// # Errors
+    /// The port is taken, or the address cannot be reached.
+    pub fn open(remote: SocketAddr, local_port: u16) -> io::Result<Self> {
+        let local: SocketAddr = match remote {
+            SocketAddr::V4(to) if to.ip().is_loopback() => (Ipv4Addr::LOCALHOST, local_port).into(),
+            SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, local_port).into(),
+            SocketAddr::V6(to) if to.ip().is_loopback() => (Ipv6Addr::LOCALHOST, local_port).into(),
+            SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, local_port).into(),
+        };
+        let socket = UdpSocket::bind(local)?;
+        socket.connect(remote)?;
+        Ok(Self {
+            socket,
+            buffer: [0; BUFFER],
+        })
+    }
+
+    /// Sends; that nobody is there is no error.
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn send(&self, datagram: &[u8]) -> io::Result<()> {
+        match self.socket.send(datagram) {
+            Err(error) if !nobody(&error) => Err(error),
+            _ => Ok(()),
+        }
+    }
+
+    /// The next datagram until `deadline`, if one comes.
+    ///
+    /// # Errors
+    /// Anything but silence.
+    pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            // A timeout of zero would mean none.
+            let timeout = left.max(Duration::from_micros(1));
+            self.socket.set_read_timeout(Some(timeout))?;
+            match self.socket.recv(&mut self.buffer) {
+                Ok(length) => return Ok(Some(&self.buffer[..length])),
+                // The port is closed: there is nobody yet, or no more.
+                Err(error) if nobody(&error) => std::thread::sleep(left.min(NOTHING)),
+                Err(error) if silence(&error) => (),
+                Err(error) => return Err(error),
+            }
+            if Instant::now() >= deadline {
+                return Ok(None);
+            }
+        }
+    }
+}
+
+fn nobody(error: &io::Error) -> bool {
+    error.kind() == ErrorKind::ConnectionRefused
+}
+
+fn silence(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}
+
+impl Peer for Udp {
+    fn exchange(
+        &mut self,
+        measurement: &[u8],
+        expect: Expect,
+        answers: &mut Vec<Vec<u8>>,
+    ) -> io::Result<bool> {
+        self.send(measurement)?;
+        let patience = match expect {
+            Expect::Answer => PATIENCE,
+            Expect::First => RESEND,
+            Expect::Perhaps => PERHAPS,
+            Expect::Nothing => NOTHING,
+            Expect::Farewell => return Ok(true),
+        };
+        let deadline = Instant::now() + patience;
+        let counter = measurement.get(..2);
+        while let Some(answer) = self.receive(deadline)? {
+            answers.push(answer.to_vec());
+            if expect != Expect::Nothing && answer.get(2..4) == counter {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
