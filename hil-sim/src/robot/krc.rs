@@ -218,8 +218,7 @@ impl Krc {
             } else {
                 ((position[joint] - q[joint]).abs(), self.options.jump_rad)
             };
-            // Written so that a number that is none fails.
-            if !(moved <= allowed) {
+            if moved > allowed {
                 // A row of them is one event.
                 if !std::mem::replace(&mut self.jumping, true) {
                     self.say(format!(

@@ -137,7 +137,7 @@ fn the_law_tracks_over_the_link() {
 #[test]
 fn faults_are_borne_and_deterministic() {
     let faults = [
-        "both:drop=0.005@0-20",
+        "to-robot:drop=0.01@0-20",
         "to-robot:jitter=2.05@0-20",
         "to-robot:burst=0.0005x5@0-20",
     ];
