@@ -177,4 +177,21 @@ mod tests {
         corrected.correct(&real);
         assert_eq!(corrected.torque, direct.torque);
     }
+
+    #[test]
+    fn the_torque_that_acts_is_the_one_sent_that_many_cycles_ago() {
+        for cycles in 0..=DEAD_CYCLES_MAX {
+            let mut line = DeadTime::<f64>::new();
+            let before = JointVector::repeat(-1.0);
+            for k in 0..12u8 {
+                let acting = line.send(cycles, &JointVector::repeat(f64::from(k)), &before);
+                let expected = if k < cycles {
+                    -1.0
+                } else {
+                    f64::from(k - cycles)
+                };
+                assert_eq!(acting, JointVector::repeat(expected), "{cycles} {k}");
+            }
+        }
+    }
 }

@@ -35,21 +35,21 @@ pub fn u32_at(bytes: &[u8], at: usize) -> u32 {
 #[must_use]
 #[inline]
 pub fn f32s_at<const N: usize>(bytes: &[u8], at: usize) -> [f32; N] {
-    core::array::from_fn(|i| f32::from_le_bytes(get(bytes, at + 4 * i)))
+    core::array::from_fn(|i| f32::from_le_bytes(get(bytes, at.saturating_add(4 * i))))
 }
 
 /// Consecutive integers.
 #[must_use]
 #[inline]
 pub fn i32s_at<const N: usize>(bytes: &[u8], at: usize) -> [i32; N] {
-    core::array::from_fn(|i| i32::from_le_bytes(get(bytes, at + 4 * i)))
+    core::array::from_fn(|i| i32::from_le_bytes(get(bytes, at.saturating_add(4 * i))))
 }
 
 /// Writes consecutive reals.
 #[inline]
 pub fn put_f32s(bytes: &mut [u8], at: usize, values: &[f32]) {
     for (i, value) in values.iter().enumerate() {
-        put(bytes, at + 4 * i, value.to_le_bytes());
+        put(bytes, at.saturating_add(4 * i), value.to_le_bytes());
     }
 }
 
@@ -57,7 +57,7 @@ pub fn put_f32s(bytes: &mut [u8], at: usize, values: &[f32]) {
 #[inline]
 pub fn put_i32s(bytes: &mut [u8], at: usize, values: &[i32]) {
     for (i, value) in values.iter().enumerate() {
-        put(bytes, at + 4 * i, value.to_le_bytes());
+        put(bytes, at.saturating_add(4 * i), value.to_le_bytes());
     }
 }
 

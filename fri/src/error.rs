@@ -41,7 +41,7 @@ pub enum Error {
         field: &'static str,
         /// Its value.
         found: u16,
-        /// The largest that means something.
+        /// The largest that means something, apart from 65535, invalid.
         max: u16,
     },
 }
@@ -58,7 +58,7 @@ impl fmt::Display for Error {
                 write!(f, "{field}[{index}]: not finite; allowed: finite numbers")
             }
             Self::Code { field, found, max } => {
-                write!(f, "{field}: {found}; allowed: 0 to {max}")
+                write!(f, "{field}: {found}; allowed: 0 to {max}, 65535")
             }
         }
     }

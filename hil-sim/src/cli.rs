@@ -3,7 +3,7 @@
 mod files;
 mod run;
 mod serve;
-mod usage;
+pub mod usage;
 
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::PathBuf;
@@ -71,7 +71,7 @@ const COMMANDS: &[&str] = &["run", "serve", "paper", "scenario", "explain"];
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => return usage::report(&error),
+        Err(error) => return usage::report("hil-sim", COMMANDS, &error),
     };
     let outcome = match cli.command {
         None => run::comparison(),

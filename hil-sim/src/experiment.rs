@@ -4,6 +4,7 @@ mod level;
 
 use std::io;
 
+use bridge::session::SessionConfig;
 use controller_core::controller::{Controller, ControllerState};
 use controller_core::fault::{Fault, FaultKind};
 use controller_core::joint::{JointState, JointVector};
@@ -14,11 +15,13 @@ use controller_core::model::ArmModel;
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, Decision, LawGains};
 use crate::invalid::Invalid;
+use crate::loopback;
 use crate::metrics::{FaultCounts, Metrics};
-use crate::names::{Named, NullStiffness};
+use crate::names::{MeasurementKind, Named, NullStiffness};
 use crate::plant::{Plant, PlantKind, PlantModel, PlantOptions};
+use crate::robot::{Robot, RobotOptions, RobotSetup};
 use crate::scenario::Scenario;
-use crate::summary::{self, Summary, Verdict};
+use crate::summary::{self, Conditions, Summary, Verdict};
 
 pub use level::LevelInstant;
 pub(crate) use level::{Places, angular_velocity};
@@ -36,6 +39,8 @@ pub struct Experiment {
     pub controller: ControllerKind,
     /// Factor on the null-space stiffness.
     pub null_stiffness: NullStiffness,
+    /// How the controller sees the arm.
+    pub measurement: MeasurementKind,
     /// Seed of mismatch and noise.
     pub seed: u64,
     /// What the plant does beyond the reference.
@@ -103,12 +108,47 @@ impl Experiment {
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
         let model = ArmModel::new(self.scenario.arm()).map_err(Invalid::line)?;
-        let mut config = self
-            .scenario
-            .controller_config(self.options.dead_cycles as u8);
-        config.null_space.stiffness *= self.null_stiffness.factor();
+        let config = match self.measurement {
+            MeasurementKind::Fri => self.session()?.controller,
+            MeasurementKind::Direct => {
+                let dead_cycles = self.options.dead_cycles as u8;
+                let mut config = self.scenario.controller_config(dead_cycles);
+                config.null_space.stiffness *= self.null_stiffness.factor();
+                config
+            }
+        };
         Controller::new(&model, &config)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
+    }
+
+    /// The bridge of a run over FRI.
+    fn session(&self) -> Result<SessionConfig, Invalid> {
+        let (scenario, dead_cycles) = (&self.scenario, self.options.dead_cycles as u8);
+        let mut config = scenario.session_config(dead_cycles, scenario.duration_s)?;
+        config.controller.null_space.stiffness *= self.null_stiffness.factor();
+        Ok(config)
+    }
+
+    /// Runs it over FRI, robot and bridge in this process.
+    fn run_over_fri(
+        &self,
+        sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+        progress: impl FnMut(f64),
+    ) -> io::Result<Summary> {
+        let config = self.session().map_err(io::Error::other)?;
+        let mut robot = Robot::new(RobotSetup {
+            scenario: self.scenario.clone(),
+            plant: self.plant,
+            contacts: self.contacts,
+            seed: self.seed,
+            plant_options: self.options,
+            options: RobotOptions::default(),
+        });
+        loopback::run(&mut robot, config, sink, progress)?;
+        Ok(Summary {
+            controller: self.controller.name(),
+            ..robot.summary()
+        })
     }
 
     /// Runs it. Every cycle is shown to `sink` and to the figures of the summary;
@@ -122,6 +162,9 @@ impl Experiment {
         mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
+        if self.measurement == MeasurementKind::Fri {
+            return self.run_over_fri(sink, progress);
+        }
         let scenario = &self.scenario;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
         let mut contacts = if self.contacts {
@@ -210,13 +253,13 @@ impl Experiment {
     fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {
         let scenario = &self.scenario;
         let levels = metrics.levels(&scenario.levels);
-        let acceptance = summary::judge(
-            scenario,
-            self.plant,
-            self.contacts,
-            self.options.dead_cycles,
-            &levels,
-        );
+        let conditions = Conditions {
+            plant: self.plant,
+            contacts: self.contacts,
+            measurement: self.measurement,
+            dead_cycles: self.options.dead_cycles,
+        };
+        let acceptance = summary::judge(scenario, &conditions, &levels);
         let mut faults = FaultCounts::default();
         let (verdict, reason) = match stop {
             None => summary::verdict(&acceptance),

@@ -13,6 +13,7 @@ pub mod experiment;
 pub mod explain;
 pub mod invalid;
 pub mod link;
+pub mod loopback;
 pub mod metrics;
 pub mod names;
 pub mod output;

@@ -72,6 +72,21 @@ impl Named for NullStiffness {
     ];
 }
 
+/// How the controller sees the arm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeasurementKind {
+    /// Position and speed as the plant gives them.
+    #[default]
+    Direct,
+    /// Positions in the datagrams of FRI; speeds are estimated.
+    Fri,
+}
+
+impl Named for MeasurementKind {
+    const THING: &'static str = "measurement";
+    const ALL: &'static [(&'static str, Self)] = &[("direct", Self::Direct), ("fri", Self::Fri)];
+}
+
 /// On or off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switch(pub bool);

@@ -6,6 +6,7 @@ mod geometry;
 mod locate;
 mod point;
 mod reference;
+mod session;
 
 use std::path::Path;
 
@@ -20,12 +21,13 @@ use serde::{Deserialize, Deserializer};
 use crate::contact::{Contacts, Hand, Push};
 use crate::invalid::{Invalid, in_range, positive};
 use crate::metrics::Metric;
-use crate::names::Named;
+use crate::names::{MeasurementKind, Named};
 use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantModel};
 
 pub use geometry::orientation;
 pub use point::PointSpec;
 pub use reference::ReferenceSpec;
+pub use session::ScenarioSource;
 
 /// The scenarios that come with the program: name and TOML text.
 pub const BUILT_IN: &[(&str, &str)] = &[
@@ -142,6 +144,10 @@ pub struct NullSpaceSpec {
     pub rate_gain: f64,
 }
 
+fn default_measurement() -> String {
+    MeasurementKind::Direct.name().to_string()
+}
+
 fn default_damping_rate() -> f64 {
     10.0
 }
@@ -179,6 +185,9 @@ pub struct Limit {
     pub plant: String,
     /// With contacts or without.
     pub contacts: bool,
+    /// "direct" or "fri".
+    #[serde(default = "default_measurement")]
+    pub measurement: String,
     /// For runs with so many cycles of dead time.
     #[serde(default)]
     pub dead_cycles: usize,
@@ -303,6 +312,7 @@ impl Scenario {
         for (number, limit) in self.limits.iter().enumerate() {
             let place = |error: Invalid| error.in_list("limit", number);
             PlantKind::from_name(&limit.plant).map_err(place)?;
+            MeasurementKind::from_name(&limit.measurement).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
             if limit.dead_cycles > DEAD_CYCLES_MAX {
                 let allowed = format_args!("0 to {DEAD_CYCLES_MAX}");

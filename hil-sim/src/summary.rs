@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::metrics::{
     FaultCounts, JointFigures, LevelFigures, LimitCounts, Metric, ResidualFigures, TorqueFigures,
 };
-use crate::names::Named;
+use crate::names::{MeasurementKind, Named};
 use crate::plant::PlantKind;
 use crate::robot::LinkFigures;
 use crate::scenario::Scenario;
@@ -86,20 +86,32 @@ pub struct Summary {
     pub link: Option<LinkFigures>,
 }
 
-/// Holds the figures against the limits that the scenario sets for this plant,
-/// with or without contacts and with this dead time.
+/// What decides which limits apply to a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Conditions {
+    /// The arm.
+    pub plant: PlantKind,
+    /// Whether contacts act.
+    pub contacts: bool,
+    /// How the controller sees the arm.
+    pub measurement: MeasurementKind,
+    /// Cycles between a torque and its effect.
+    pub dead_cycles: usize,
+}
+
+/// Holds the figures against the limits that the scenario sets for these
+/// conditions.
 #[must_use]
 pub fn judge(
     scenario: &Scenario,
-    plant: PlantKind,
-    contacts: bool,
-    dead_cycles: usize,
+    conditions: &Conditions,
     levels: &[LevelFigures],
 ) -> Vec<Acceptance> {
     let applies = scenario.limits.iter().filter(|limit| {
-        PlantKind::from_name(&limit.plant) == Ok(plant)
-            && limit.contacts == contacts
-            && limit.dead_cycles == dead_cycles
+        PlantKind::from_name(&limit.plant) == Ok(conditions.plant)
+            && limit.contacts == conditions.contacts
+            && MeasurementKind::from_name(&limit.measurement) == Ok(conditions.measurement)
+            && limit.dead_cycles == conditions.dead_cycles
     });
     applies
         .filter_map(|limit| {

@@ -67,7 +67,7 @@ fn state_and_recorder_can_be_static() {
     assert!(step.status.is_clear(), "{:?}", step.status);
 }
 
-/// The rule of (17): a row with R_kk^2 below 1e-8 has no acceleration and a flag,
+/// The rank rule: a row with R_kk^2 below 1e-8 has no acceleration and a flag,
 /// any other has none. On the straightening arm the radial row of the flange
 /// crosses the threshold; the other rows never do.
 #[test]

@@ -24,8 +24,10 @@ fn split(name: &str) -> &'static [Spec] {
 fn states(name: &str, seed: u64, mut check: impl FnMut(&Sample, &Oracle, &mut States)) {
     let (model, config) = (lwr(), configuration(split(name)));
     let mut random = States::new(seed);
-    let mut checked = 0;
+    let (mut checked, mut tries) = (0, 0);
     while checked < STATES {
+        tries += 1;
+        assert!(tries < 100 * STATES, "{name}: every state is singular");
         let state = random.state();
         let wish = Wish::random(&model, &config, &state, &mut random);
         let sample = Sample::new(&model, &config, state, &wish);

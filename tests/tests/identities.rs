@@ -1,10 +1,11 @@
 //! The core's kinematics and dynamics against identities that any correct
 //! model obeys, and against the independent plant.
 
-use controller_core::joint::{JointState, JointVector};
+use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::kinematics::LinkPoint;
 use controller_core::model::LWR_IV;
 use hil_sim::plant::PlantModel;
+use hil_sim::scenario::{BUILT_IN, Scenario};
 use stratum_tests::random::States;
 use stratum_tests::{JOINTS, evaluate, lwr, relative, unit};
 
@@ -187,4 +188,33 @@ fn evaluating_twice_gives_the_same_bits() {
     assert_eq!(before.mass_matrix, after.mass_matrix);
     assert_eq!(before.coriolis_matrix, after.coriolis_matrix);
     assert_eq!(before.gravity, after.gravity);
+}
+
+/// A push is J^T F at the point that the scenario names, with J of the core.
+/// Two ways of adding the same ten products: rounding only.
+#[test]
+fn contacts_act_on_the_point_that_they_name() {
+    let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
+    let mut states = States::new(9);
+    let mut pushes = 0;
+    for (name, _) in BUILT_IN {
+        let scenario = Scenario::find(name).expect("built in");
+        let contacts = scenario.contacts();
+        for push in &scenario.pushes {
+            let (middle, point) = ((push.from_s + push.to_s) / 2.0, push.point.resolve());
+            for _ in 0..20 {
+                let state = states.state();
+                let (kinematics, _) = evaluate(&model, &state);
+                let motion = kinematics.point(&point);
+                let rows = kinematics.point_jacobian(point.link, &motion).jacobian;
+                let force = Vector3::from(push.force_n);
+                let expected = rows[0] * force.x + rows[1] * force.y + rows[2] * force.z;
+                let (torque, _) = contacts.joint_torque(middle, &plant, &state);
+                assert!((torque - expected).amax() < 1e-12, "{name}: {torque}");
+                assert!(torque.iter().skip(point.link).all(|&beyond| beyond == 0.0));
+            }
+            pushes += 1;
+        }
+    }
+    assert!(pushes >= 14, "{pushes}");
 }

@@ -3,7 +3,7 @@
 
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
-use hil_sim::names::NullStiffness;
+use hil_sim::names::{MeasurementKind, NullStiffness};
 use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::scenario::Scenario;
 use hil_sim::summary::{Summary, Verdict};
@@ -21,6 +21,7 @@ fn run(
         contacts,
         controller,
         null_stiffness: NullStiffness::Normal,
+        measurement: MeasurementKind::Direct,
         seed,
         options: PlantOptions::default(),
     };

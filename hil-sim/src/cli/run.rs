@@ -11,7 +11,7 @@ use super::files::Files;
 use crate::controllers::ControllerKind;
 use crate::experiment::Experiment;
 use crate::invalid::{Invalid, in_range, positive};
-use crate::names::{Named, NullStiffness, Switch};
+use crate::names::{MeasurementKind, Named, NullStiffness, Switch};
 use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantOptions};
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
@@ -34,6 +34,9 @@ pub struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
+    /// direct, or fri: through the datagrams of the robot link, speeds estimated
+    #[arg(long, default_value = "direct")]
+    measurement: String,
     /// Cycles between the torque and its effect, 0 to 8; above 0 the null-space
     /// damping is the scenario's inertia-shaped one
     #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
@@ -111,6 +114,7 @@ impl RunOptions {
         option("contacts", &self.contacts, "on");
         option("controller", &self.controller, "hierarchical");
         option("null-stiffness", &self.null_stiffness, "normal");
+        option("measurement", &self.measurement, "direct");
         option("dead-cycles", &self.dead_cycles.to_string(), "0");
         option("stiction", &self.stiction, "off");
         option("elasticity", &self.elasticity, "off");
@@ -132,12 +136,19 @@ impl RunOptions {
             let [min, max] = CYCLE_RANGE_MS;
             scenario.cycle_ms = in_range("--cycle-ms", cycle, min, max)?;
         }
+        let controller = ControllerKind::from_name(&self.controller)?;
+        let measurement = MeasurementKind::from_name(&self.measurement)?;
+        if measurement == MeasurementKind::Fri && controller != ControllerKind::Hierarchical {
+            let allowed = "hierarchical with --measurement fri, which runs the product alone";
+            return Err(Invalid::new("controller", &self.controller, allowed));
+        }
         Ok(Experiment {
             scenario,
             plant: PlantKind::from_name(&self.plant)?,
             contacts: switch("--contacts", &self.contacts)?,
-            controller: ControllerKind::from_name(&self.controller)?,
+            controller,
             null_stiffness: NullStiffness::from_name(&self.null_stiffness)?,
+            measurement,
             seed: self.seed,
             options: PlantOptions {
                 stiction: switch("--stiction", &self.stiction)?,
@@ -168,6 +179,7 @@ pub fn comparison() -> Result<u8, Invalid> {
         contacts: true,
         controller: ControllerKind::Hierarchical,
         null_stiffness: NullStiffness::Normal,
+        measurement: MeasurementKind::Direct,
         seed: 1,
         options: PlantOptions::default(),
     };

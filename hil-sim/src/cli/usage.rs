@@ -5,18 +5,19 @@ use std::process::ExitCode;
 use crate::invalid::Invalid;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-/// Prints help and version as they are, an error in one line.
-pub fn report(error: &clap::Error) -> ExitCode {
+/// Prints help and version as they are, an error of `program` in one line;
+/// `commands` are the ones it has.
+pub fn report(program: &str, commands: &[&str], error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         // A reader that closes the pipe early is no error.
         let _ = error.print();
         return ExitCode::SUCCESS;
     }
-    eprintln!("error: {}", line(error));
+    eprintln!("error: {}", line(program, commands, error));
     ExitCode::from(super::USAGE)
 }
 
-fn line(error: &clap::Error) -> String {
+fn line(program: &str, commands: &[&str], error: &clap::Error) -> String {
     let context = |kind| {
         error.get(kind).map(|value| match value {
             ContextValue::Strings(all) => all.join(", "),
@@ -34,23 +35,23 @@ fn line(error: &clap::Error) -> String {
         .map_or(";".into(), |name| format!(", did you mean '{name}'?"));
     match error.kind() {
         ErrorKind::UnknownArgument => {
-            format!("unknown argument '{given}'{nearest} allowed: see 'hil-sim --help'")
+            format!("unknown argument '{given}'{nearest} allowed: see '{program} --help'")
         }
         ErrorKind::InvalidSubcommand => {
             let given = context(ContextKind::InvalidSubcommand).unwrap_or_default();
-            Invalid::name("command", &given, super::COMMANDS).to_string()
+            Invalid::name("command", &given, commands).to_string()
         }
         ErrorKind::ValueValidation | ErrorKind::InvalidValue if !value.is_empty() => {
             match std::error::Error::source(error) {
                 Some(source) => format!("{given}: '{value}'; allowed: {source}"),
-                None => format!("{given}: '{value}'; see 'hil-sim --help'"),
+                None => format!("{given}: '{value}'; see '{program} --help'"),
             }
         }
         ErrorKind::InvalidValue => {
-            format!("{given}: a value is missing; allowed: see 'hil-sim --help'")
+            format!("{given}: a value is missing; allowed: see '{program} --help'")
         }
         ErrorKind::MissingRequiredArgument => {
-            format!("missing argument: {given}; allowed: see 'hil-sim --help'")
+            format!("missing argument: {given}; allowed: see '{program} --help'")
         }
         ErrorKind::ArgumentConflict => format!("{given}: given more than once; allowed: once"),
         _ => error

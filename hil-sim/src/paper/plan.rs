@@ -6,7 +6,7 @@ use crate::controllers::ControllerKind::{
 };
 use crate::experiment::Experiment;
 use crate::invalid::Invalid;
-use crate::names::{Named, NullStiffness};
+use crate::names::{MeasurementKind, Named, NullStiffness};
 use crate::plant::PlantKind::{self, Ideal, Realistic};
 use crate::plant::PlantOptions;
 use crate::scenario::{PostureSpec, ReferenceSpec, Scenario};
@@ -103,6 +103,7 @@ impl Family {
                 plant: self.plant,
                 contacts: self.contacts,
                 controller: self.controller,
+                measurement: MeasurementKind::Direct,
                 null_stiffness: self.stiffness,
                 seed,
                 options: PlantOptions::default(),

@@ -11,6 +11,8 @@ use super::options::Scheme;
 use super::order::wire;
 use super::rating::Quality;
 use super::{FaultCounts, Named, Robot, Seen, Summary, Verdict, summary};
+use crate::names::MeasurementKind;
+use crate::summary::Conditions;
 
 /// Power bits with the drives on: one per joint.
 const POWER: u16 = 0x7F;
@@ -83,9 +85,13 @@ impl Robot {
         let setup = &self.setup;
         let scenario = &setup.scenario;
         let levels = self.metrics.levels(&scenario.levels);
-        let dead_cycles = setup.plant_options.dead_cycles;
-        let acceptance =
-            summary::judge(scenario, setup.plant, setup.contacts, dead_cycles, &levels);
+        let conditions = Conditions {
+            plant: setup.plant,
+            contacts: setup.contacts,
+            measurement: MeasurementKind::Fri,
+            dead_cycles: setup.plant_options.dead_cycles,
+        };
+        let acceptance = summary::judge(scenario, &conditions, &levels);
         let (verdict, reason) = match &self.stop {
             Some(reason) => (Verdict::Stopped, Some(reason.clone())),
             None => match summary::verdict(&acceptance) {

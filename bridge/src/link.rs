@@ -1,0 +1,119 @@
+//! The state of the link: counters on both sides, and whether it carries a motion.
+
+use fri::sequence::{Arrival, Receiver, Sender};
+
+use crate::wire::Incoming;
+
+/// A counter that is ahead by more than this is no loss but another sender, or a
+/// damaged datagram that has passed its check.
+const JUMP_MAX: u16 = 1000;
+
+/// Datagrams in a row that do not fit the counters, after which they are believed:
+/// the robot has started again.
+const RESYNC: u8 = 10;
+
+/// Counters and their gaps.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    receiver: Receiver,
+    sender: Sender,
+    /// Datagrams in a row that were not fresh.
+    stale: u8,
+    /// What the robot mirrored last.
+    reflected: u16,
+    /// Cycles since that changed.
+    unheard: u16,
+    /// Cycles since the last trouble.
+    clean: u16,
+    bad: bool,
+    /// Cycles since trouble began.
+    pub bad_cycles: u32,
+}
+
+impl Link {
+    pub const fn new() -> Self {
+        Self {
+            receiver: Receiver::new(),
+            sender: Sender::starting_at(1),
+            stale: 0,
+            reflected: 0,
+            unheard: 0,
+            clean: 0,
+            bad: false,
+            bad_cycles: 0,
+        }
+    }
+
+    /// Accepts any counter next.
+    pub fn resync(&mut self) {
+        self.receiver.reset();
+    }
+
+    /// Measurements lost before this one; none if it is not to be answered.
+    pub fn arrival(&mut self, incoming: &Incoming<'_>) -> Option<u16> {
+        let mut probe = self.receiver;
+        let mut arrival = probe.receive(incoming.counter);
+        if matches!(arrival, Arrival::Next { lost } if lost > JUMP_MAX) {
+            arrival = Arrival::Old;
+            probe = self.receiver;
+        }
+        self.receiver = probe;
+        let lost = match arrival {
+            Arrival::First => 0,
+            Arrival::Next { lost } => lost,
+            Arrival::Repeated => return None,
+            Arrival::Old => {
+                self.stale += 1;
+                if self.stale >= RESYNC {
+                    self.stale = 0;
+                    self.receiver.reset();
+                }
+                return None;
+            }
+        };
+        self.stale = 0;
+        let passed = lost.saturating_add(1);
+        self.unheard = if incoming.reflected == self.reflected {
+            self.unheard.saturating_add(passed)
+        } else {
+            0
+        };
+        self.reflected = incoming.reflected;
+        Some(lost)
+    }
+
+    /// Judges the link in this cycle: bad when more than `limit` measurements were
+    /// lost or commands are not heard, good again after `resume` clean cycles.
+    pub fn judge(&mut self, lost: u16, limit: u16, resume: u16) -> bool {
+        // A robot that mirrors nothing says nothing about what it hears.
+        let deaf = self.unheard > limit && self.reflected != 0;
+        if lost > limit || deaf {
+            if !self.bad {
+                self.bad_cycles = 0;
+            }
+            self.bad = true;
+            self.clean = 0;
+        } else {
+            self.clean = self.clean.saturating_add(1);
+            if self.clean >= resume {
+                self.bad = false;
+            }
+        }
+        if self.bad {
+            self.bad_cycles = self.bad_cycles.saturating_add(1 + u32::from(lost));
+        }
+        self.bad
+    }
+
+    /// Forgets the trouble of before.
+    pub fn clear(&mut self) {
+        self.bad = false;
+        self.clean = 0;
+        self.unheard = 0;
+    }
+
+    /// The counter of an answer.
+    pub fn answer(&mut self) -> u16 {
+        self.sender.advance()
+    }
+}

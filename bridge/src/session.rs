@@ -1,0 +1,592 @@
+//! The conversation with the robot: who may move it, when, and with what.
+//!
+//! ```text
+//!            first datagram            state 2, drives on
+//!  Waiting ------------------> Ready ---------------------> Starting
+//!                               ^                              | time 0
+//!          state not 2          |                              v
+//!  (any) -----------------------+      link bad  +--------- Moving
+//!                                                v             ^
+//!  end of the motion, stop(), fault           Holding ---------+ link good
+//!        v
+//!  Stopping: comes to rest, then the robot's own stiffness holds it
+//! ```
+//!
+//! In every state every fresh datagram gets one answer, with the same flags. Only
+//! in `Starting`, `Moving`, `Holding` and `Stopping` does an answer carry torque.
+
+use controller_core::config::{ConfigError, ControllerConfig};
+use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::joint::{DOF, JointState, JointVector, zeros};
+use controller_core::kinematics::LinkPoint;
+use controller_core::measurement::{INTERVAL_FACTORS, Measurement, Reference};
+use controller_core::model::ArmModel;
+use controller_core::real::Real;
+use controller_core::trajectory::quintic;
+use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
+
+use crate::audit::Audit;
+use crate::guide::{Guide, GuideTimes, ReferenceSource};
+use crate::link::Link;
+use crate::sent::SentTorques;
+use crate::wire::{Incoming, Outgoing, measured};
+
+pub use crate::wire::{ANSWER_LEN, RobotState};
+
+/// What the robot adds to the torque that it is sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RobotAdds {
+    /// Gravity g(q).
+    #[default]
+    Gravity,
+    /// Gravity and Coriolis torque.
+    GravityAndCoriolis,
+}
+
+/// What a session is made of. Times are in s, counts in cycles.
+#[derive(Clone, Debug)]
+pub struct SessionConfig {
+    /// The arm that the controller believes in.
+    pub model: ArmModel<f64>,
+    /// Tasks and gains. The cycle comes from the robot.
+    pub controller: ControllerConfig<f64>,
+    /// The flange, for the audit of the robot's Jacobian.
+    pub flange: LinkPoint<f64>,
+    /// What must not be sent.
+    pub robot_adds: RobotAdds,
+    /// Between the first command state and time 0 of the motion; the posture is held.
+    pub settle_s: f64,
+    /// In which the torque grows from zero on entering command state.
+    pub ramp_s: f64,
+    /// Length of the motion, from time 0.
+    pub duration_s: f64,
+    /// Transitions of the reference.
+    pub guide: GuideTimes,
+    /// Lost measurements, or commands that the robot does not have, after which
+    /// the arm is held.
+    pub hold_after: u16,
+    /// Clean cycles after which a held arm moves on.
+    pub resume_after: u16,
+    /// Time held after which the session stops.
+    pub stop_after_s: f64,
+    /// Never move the robot: audit, and torques as they would be.
+    pub dry: bool,
+}
+
+impl SessionConfig {
+    /// With the times and counts of a robot on a wired network.
+    #[must_use]
+    pub fn new(
+        model: &ArmModel<f64>,
+        controller: ControllerConfig<f64>,
+        flange: LinkPoint<f64>,
+        duration_s: f64,
+    ) -> Self {
+        Self {
+            model: *model,
+            controller,
+            flange,
+            robot_adds: RobotAdds::Gravity,
+            settle_s: 1.0,
+            ramp_s: 0.5,
+            duration_s,
+            guide: GuideTimes::default(),
+            hold_after: 5,
+            resume_after: 50,
+            stop_after_s: 2.0,
+            dry: false,
+        }
+    }
+}
+
+/// Where the conversation stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// No datagram yet.
+    Waiting,
+    /// The robot talks and is not in command state, or its drives are off.
+    Ready,
+    /// In command, torque grows, posture held until time 0.
+    Starting,
+    /// The wanted motion.
+    Moving,
+    /// In command, held because the link cannot carry the motion.
+    Holding,
+    /// Coming to rest, then held by the robot's own stiffness.
+    Stopping,
+    /// At rest after the end, or the robot has left command state after it.
+    Finished,
+}
+
+impl Phase {
+    /// One word for reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Ready => "ready",
+            Self::Starting => "starting",
+            Self::Moving => "moving",
+            Self::Holding => "holding",
+            Self::Stopping => "stopping",
+            Self::Finished => "finished",
+        }
+    }
+
+    /// Whether answers carry torque.
+    #[must_use]
+    pub fn is_in_command(self) -> bool {
+        matches!(
+            self,
+            Self::Starting | Self::Moving | Self::Holding | Self::Stopping
+        )
+    }
+}
+
+/// Why a session stops early.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StopReason {
+    /// The motion is over.
+    Done,
+    /// [`Session::stop`] was called.
+    Asked,
+    /// The controller latched a fault, see [`Session::fault`].
+    Fault,
+    /// The link was bad for longer than allowed.
+    Link,
+}
+
+/// What became of a datagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// It is answered.
+    Answered,
+    /// It is not a measurement that can be used: no answer.
+    Rejected(fri::Error),
+    /// It was answered before, or is older than one that was: no answer.
+    Stale,
+    /// The controller cannot work at the robot's cycle: no answer.
+    Unusable(ConfigError),
+}
+
+/// One answered cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct CycleReport {
+    /// Where the conversation stands.
+    pub phase: Phase,
+    /// Scenario time \[s\]; before 0 while the arm settles. Zero before command state.
+    pub t_s: f64,
+    /// Counter of the measurement.
+    pub counter: u16,
+    /// Measurements lost just before this one.
+    pub lost: u16,
+    /// What the robot says of itself.
+    pub robot: RobotState,
+    /// Measured position \[rad\] and estimated speed \[rad/s\].
+    pub joints: JointState<f64>,
+    /// The controller's cycle; none where it did not run.
+    pub step: Option<Step<f64>>,
+    /// Torque sent \[Nm\], as the robot gets it.
+    pub sent: JointVector<f64>,
+}
+
+/// The session: configuration, controller, and everything that changes.
+#[derive(Clone, Debug)]
+pub struct Session {
+    config: SessionConfig,
+    controller: Option<Controller<f64>>,
+    state: ControllerState<f64>,
+    velocity: VelocityEstimator<f64>,
+    sent: SentTorques,
+    guide: Guide,
+    link: Link,
+    phase: Phase,
+    stop: Option<StopReason>,
+    audit: Audit,
+    /// Cycles since the first datagram, lost ones included.
+    cycle: u64,
+    /// The cycle in which command state was first seen.
+    first_command: Option<u64>,
+    /// Cycles since command state was last entered.
+    in_command: u64,
+    /// Cycles since stopping began.
+    stopping: u64,
+    /// Where the robot's own stiffness holds the arm, once it does \[rad\].
+    hold: Option<[f32; DOF]>,
+    /// What the robot added in the last cycle \[Nm\].
+    robot_part: JointVector<f64>,
+    cycle_s: f64,
+    last: Option<CycleReport>,
+}
+
+impl Session {
+    /// Waiting for the first datagram.
+    #[must_use]
+    pub fn new(config: SessionConfig) -> Self {
+        let guide = Guide::new(config.guide, &config.controller.tasks);
+        Self {
+            config,
+            controller: None,
+            state: ControllerState::new(),
+            velocity: VelocityEstimator::new(CORNER_HZ),
+            sent: SentTorques::new(),
+            guide,
+            link: Link::new(),
+            phase: Phase::Waiting,
+            stop: None,
+            audit: Audit::default(),
+            cycle: 0,
+            first_command: None,
+            in_command: 0,
+            stopping: 0,
+            hold: None,
+            robot_part: zeros(),
+            cycle_s: 0.0,
+            last: None,
+        }
+    }
+
+    /// Where the conversation stands.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Why it stops or has stopped, if it does.
+    #[must_use]
+    pub fn stop_reason(&self) -> Option<StopReason> {
+        self.stop
+    }
+
+    /// The controller's latched fault.
+    #[must_use]
+    pub fn fault(&self) -> Option<controller_core::fault::Fault> {
+        self.state.fault()
+    }
+
+    /// The robot's model against the controller's, so far.
+    #[must_use]
+    pub fn audit(&self) -> &Audit {
+        &self.audit
+    }
+
+    /// The last answered cycle.
+    #[must_use]
+    pub fn last(&self) -> Option<&CycleReport> {
+        self.last.as_ref()
+    }
+
+    /// The controller, once the robot's cycle is known.
+    #[must_use]
+    pub fn controller(&self) -> Option<&Controller<f64>> {
+        self.controller.as_ref()
+    }
+
+    /// The robot's cycle \[s\]; 0 before the first datagram.
+    #[must_use]
+    pub fn cycle_s(&self) -> f64 {
+        self.cycle_s
+    }
+
+    /// The reference of the last cycle.
+    #[must_use]
+    pub fn reference(&self) -> &Reference<f64> {
+        self.guide.reference()
+    }
+
+    /// Brings the arm to rest and ends the session.
+    pub fn stop(&mut self) {
+        self.stop_for(StopReason::Asked);
+    }
+
+    /// For a robot that was silent so long that it may have been restarted: any
+    /// counter is accepted next. The motion is over, if there was one.
+    pub fn silent(&mut self) {
+        self.link.resync();
+        self.leave_command();
+        if self.first_command.is_some() {
+            self.phase = Phase::Finished;
+        }
+    }
+
+    /// Takes a datagram, and writes the answer if it gets one.
+    pub fn receive(
+        &mut self,
+        datagram: &[u8],
+        source: &mut impl ReferenceSource,
+        answer: &mut [u8; ANSWER_LEN],
+    ) -> Outcome {
+        let incoming = match Incoming::read(datagram) {
+            Ok(incoming) => incoming,
+            Err(error) => return Outcome::Rejected(error),
+        };
+        let Some(lost) = self.link.arrival(&incoming) else {
+            return Outcome::Stale;
+        };
+        if let Err(error) = self.take_cycle(&incoming) {
+            return Outcome::Unusable(error);
+        }
+        self.cycle += 1 + u64::from(lost);
+
+        let interval_s = self.cycle_s * f64::from(1 + u32::from(lost));
+        let joints = self.velocity.update(&incoming.q, interval_s);
+        let acted = self
+            .sent
+            .acted(incoming.reflected, self.config.controller.dead_cycles);
+        self.advance_phase(&incoming, lost, source);
+        self.watch_model(&incoming);
+
+        let holding = self.hold.is_some() && incoming.robot.takes_torque();
+        let outgoing = if self.phase.is_in_command() || holding || self.config.dry {
+            self.state.applied(&(acted + self.robot_part));
+            self.control(&incoming, joints, interval_s, lost, source)
+        } else {
+            Outgoing::mirror(&incoming)
+        };
+        let counter = self.link.answer();
+        self.sent.send(counter, outgoing.torque());
+        outgoing.write(answer, counter, &incoming, self.wish());
+        self.last = Some(CycleReport {
+            phase: self.phase,
+            t_s: self.time_s(),
+            counter: incoming.counter,
+            lost,
+            robot: incoming.robot,
+            joints,
+            step: outgoing.step,
+            sent: outgoing.torque(),
+        });
+        Outcome::Answered
+    }
+
+    /// Makes the controller for the robot's cycle, again if that changes before
+    /// command state.
+    fn take_cycle(&mut self, incoming: &Incoming) -> Result<(), ConfigError> {
+        let period = incoming.period_s.unwrap_or(self.config.controller.cycle_s);
+        let known = self.controller.is_some() && period == self.cycle_s;
+        if known || self.first_command.is_some() {
+            return Ok(());
+        }
+        self.config.controller.cycle_s = period;
+        let controller = Controller::new(&self.config.model, &self.config.controller)?;
+        self.cycle_s = period;
+        self.guide.rest(&controller.rest(&incoming.q));
+        self.controller = Some(controller);
+        Ok(())
+    }
+
+    /// Scenario time of this cycle \[s\].
+    fn time_s(&self) -> f64 {
+        self.first_command
+            .map_or(0.0, |first| self.cycles_since(first) as f64 * self.cycle_s)
+    }
+
+    /// Cycles since time 0, negative before.
+    fn cycles_since(&self, first_command: u64) -> i64 {
+        let settle = cycles(self.config.settle_s, self.cycle_s);
+        (self.cycle - first_command) as i64 - settle
+    }
+
+    /// Whether the motion has had all its cycles.
+    fn is_over(&self, first_command: u64) -> bool {
+        let all = cycles(self.config.duration_s, self.cycle_s);
+        self.cycles_since(first_command) >= all
+    }
+
+    fn advance_phase(&mut self, incoming: &Incoming, lost: u16, source: &mut impl ReferenceSource) {
+        let over = (self.first_command).is_some_and(|first| self.is_over(first));
+        if !incoming.robot.takes_torque() || self.config.dry {
+            self.leave_command();
+            if over {
+                self.stop_for(StopReason::Done);
+            }
+            self.phase = match self.phase {
+                Phase::Finished | Phase::Stopping => Phase::Finished,
+                _ if self.stop.is_some() => Phase::Finished,
+                _ => Phase::Ready,
+            };
+            return;
+        }
+        if self.phase == Phase::Finished {
+            return;
+        }
+        if self.stop.is_some() && !self.phase.is_in_command() {
+            self.phase = Phase::Finished;
+            return;
+        }
+        if !self.phase.is_in_command() {
+            self.enter_command(incoming, source);
+        }
+        self.in_command += 1 + u64::from(lost);
+        let Some(first) = self.first_command else {
+            return;
+        };
+        let now = self.cycles_since(first);
+        if over {
+            self.stop_for(StopReason::Done);
+        }
+        if self.state.fault().is_some() {
+            self.stop_for(StopReason::Fault);
+        }
+        let (limit, resume) = (self.config.hold_after, self.config.resume_after);
+        let bad = self.link.judge(lost, limit, resume);
+        self.phase = match self.phase {
+            Phase::Stopping => {
+                self.stopping += 1 + u64::from(lost);
+                let rest_s = self.config.guide.brake_s + HANDOVER_S;
+                if self.stopping as i64 > cycles(rest_s, self.cycle_s) {
+                    Phase::Finished
+                } else {
+                    Phase::Stopping
+                }
+            }
+            _ if bad => {
+                if self.link.bad_cycles as f64 * self.cycle_s > self.config.stop_after_s {
+                    self.stop_for(StopReason::Link);
+                    Phase::Stopping
+                } else {
+                    Phase::Holding
+                }
+            }
+            _ if now < 0 => Phase::Starting,
+            _ => Phase::Moving,
+        };
+    }
+
+    /// Command state begins: rest here, torque from zero.
+    fn enter_command(&mut self, incoming: &Incoming, source: &mut impl ReferenceSource) {
+        let Some(controller) = &self.controller else {
+            return;
+        };
+        let rest = controller.rest(&incoming.q);
+        self.guide.rest(&rest);
+        self.state.reset();
+        self.in_command = 0;
+        self.link.clear();
+        self.phase = Phase::Starting;
+        if self.first_command.is_none() {
+            self.first_command = Some(self.cycle);
+            source.start(&rest);
+        }
+    }
+
+    fn leave_command(&mut self) {
+        if self.phase.is_in_command() {
+            self.in_command = 0;
+            self.hold = None;
+        }
+    }
+
+    fn stop_for(&mut self, reason: StopReason) {
+        if self.stop.is_none() {
+            self.stop = Some(reason);
+            self.stopping = 0;
+            if self.phase.is_in_command() {
+                self.phase = Phase::Stopping;
+            }
+        }
+    }
+
+    /// Compares models at first, then now and then.
+    fn watch_model(&mut self, incoming: &Incoming) {
+        if self.cycle % AUDIT_EVERY == 1 {
+            let model = &self.config.model;
+            self.audit
+                .compare(model, &self.config.flange, &incoming.model());
+        }
+    }
+
+    /// The control cycle.
+    fn control(
+        &mut self,
+        incoming: &Incoming,
+        joints: JointState<f64>,
+        interval_s: f64,
+        lost: u16,
+        source: &mut impl ReferenceSource,
+    ) -> Outgoing {
+        let Some(controller) = &self.controller else {
+            return Outgoing::mirror(incoming);
+        };
+        let now = self.first_command.map(|first| self.cycles_since(first));
+        let t_s = now.map(|now| now as f64 * self.cycle_s);
+        let wanted = match (self.phase, t_s) {
+            (Phase::Moving, Some(t_s)) => source.sample(t_s),
+            _ => None,
+        };
+        if now == Some(0) && lost == 0 && self.phase == Phase::Moving {
+            // The motion starts at rest where the arm rests.
+            self.guide.follow();
+        }
+        let reference = self.guide.advance(wanted.as_ref(), interval_s);
+
+        // A gap longer than the core believes is a new beginning for its observer.
+        let [_, longest] = INTERVAL_FACTORS;
+        let gap = interval_s > longest * self.cycle_s;
+        if gap && self.state.fault().is_none() {
+            self.state.reset();
+        }
+        let measurement = Measurement {
+            q: joints.q,
+            dq: joints.dq,
+            interval_s: if gap { self.cycle_s } else { interval_s },
+        };
+        let step = controller.step(&mut self.state, &measurement, reference);
+        self.robot_part = match self.config.robot_adds {
+            RobotAdds::Gravity => step.gravity,
+            RobotAdds::GravityAndCoriolis => step.gravity + step.coriolis,
+        };
+        if self.config.dry {
+            let mut outgoing = Outgoing::mirror(incoming);
+            outgoing.step = Some(step);
+            return outgoing;
+        }
+        let torque = (step.torque - self.robot_part) * self.ramp();
+        let stiffness = self.stiffness_share();
+        if stiffness > 0.0 && self.hold.is_none() {
+            self.hold = Some(measured(incoming));
+        }
+        Outgoing::command(incoming, step, &torque, self.hold.as_ref(), stiffness)
+    }
+
+    /// Share of the torque that is sent, 0 to 1.
+    fn ramp(&self) -> f64 {
+        let since = self.in_command.saturating_sub(1) as f64 * self.cycle_s;
+        let [share, ..] = quintic(since / self.config.ramp_s);
+        share * (1.0 - self.stiffness_share())
+    }
+
+    /// Share of the robot's own stiffness that holds the arm, 0 to 1: after the
+    /// reference has come to rest, or at once where the controller has a fault.
+    fn stiffness_share(&self) -> f64 {
+        match self.phase {
+            Phase::Stopping => {}
+            Phase::Finished => return 1.0,
+            _ => return 0.0,
+        }
+        let brake_s = if self.state.fault().is_some() {
+            0.0
+        } else {
+            self.config.guide.brake_s
+        };
+        let since = self.stopping as f64 * self.cycle_s - brake_s;
+        let [share, ..] = quintic(since / HANDOVER_S);
+        share
+    }
+
+    /// What the robot program is asked for.
+    fn wish(&self) -> bool {
+        self.stop.is_none() && !self.config.dry
+    }
+}
+
+/// Between a reference at rest and the robot's own stiffness \[s\].
+const HANDOVER_S: f64 = 0.3;
+
+/// Every how many cycles the models are compared.
+const AUDIT_EVERY: u64 = 50;
+
+/// A time \[s\] as a whole number of cycles, rounded.
+fn cycles(time_s: f64, cycle_s: f64) -> i64 {
+    (time_s / cycle_s + 0.5).floor_small() as i64
+}

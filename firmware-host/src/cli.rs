@@ -1,0 +1,432 @@
+//! The command line, and one line for everything that cannot be used.
+
+use std::fmt::Write as _;
+use std::io::IsTerminal;
+use std::net::{SocketAddr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use bridge::guide::ReferenceSource;
+use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
+use clap::{Args, Parser, Subcommand};
+use controller_core::controller::Controller;
+use controller_core::joint::JointVector;
+use controller_core::model::ArmModel;
+use hil_sim::cli::usage;
+use hil_sim::invalid::{Invalid, in_range, positive};
+use hil_sim::names::{Named, NullStiffness};
+use hil_sim::plant::DEAD_CYCLES_MAX;
+use hil_sim::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
+
+use crate::doctor;
+use crate::realtime::Realtime;
+use crate::recorder::{self, Recorder};
+use crate::run::{Link, converse};
+use crate::stream::Stream;
+use crate::summary::Summary;
+
+/// Cycles kept for the case of a fault: 2 s at 2 ms.
+const FLIGHT: usize = 1000;
+
+/// The torque controller of a KUKA LWR on a PC: answers the robot's FRI
+/// datagrams.
+#[derive(Debug, Parser)]
+#[command(
+    name = "firmware-host",
+    version,
+    after_help = "Exit codes: 0 done, 2 usage or configuration error, 3 stopped by safety, 4 no robot."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Answer the robot until the motion is over
+    Run(Box<RunOptions>),
+    /// Can this PC hold the cycle? Scheduling, jitter, latency, with advice
+    Doctor {
+        /// Cycle in ms, 0.1 to 20
+        #[arg(long, default_value_t = 2.0, value_parser = number, allow_negative_numbers = true)]
+        cycle_ms: f64,
+        /// Processor for the control thread, from 0
+        #[arg(long)]
+        cpu: Option<usize>,
+    },
+}
+
+/// Options of `run`.
+#[derive(Clone, Debug, Args)]
+struct RunOptions {
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
+    #[arg(long, default_value = "two-level")]
+    scenario: String,
+    /// Address and port to which the robot sends
+    #[arg(long, default_value = "127.0.0.1:49938")]
+    listen: SocketAddr,
+    /// Answer this address only [default: the first that sends a measurement]
+    #[arg(long)]
+    peer: Option<SocketAddr>,
+    /// Length of the motion in s, up to 3600 [default: the scenario's]
+    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    duration: Option<f64>,
+    /// Cycles between the arrival of a torque and its effect, 0 to 8
+    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    dead_cycles: u8,
+    /// What the robot adds to the torque: gravity, gravity-coriolis
+    #[arg(long, default_value = "gravity")]
+    robot_adds: String,
+    /// Null-space stiffness: low (x 0.2), normal, high (x 4)
+    #[arg(long, default_value = "normal")]
+    null_stiffness: String,
+    /// Refuse a start posture that is farther from the scenario's than this, in deg
+    #[arg(long, value_parser = number, allow_negative_numbers = true, value_name = "DEG")]
+    require_start: Option<f64>,
+    /// Take references from UDP datagrams at this address instead of the scenario
+    #[arg(long, value_name = "ADDR:PORT")]
+    references: Option<SocketAddr>,
+    /// Hold when no reference has come for so many ms
+    #[arg(long, default_value_t = 100.0, value_parser = number, allow_negative_numbers = true)]
+    reference_timeout_ms: f64,
+    /// Never move the robot: check its model, show the torques as they would be
+    #[arg(long)]
+    dry: bool,
+    /// Seconds to wait for the robot
+    #[arg(long, default_value_t = 60.0, value_parser = number, allow_negative_numbers = true)]
+    wait: f64,
+    /// Processor for the control thread, from 0
+    #[arg(long)]
+    cpu: Option<usize>,
+    /// Write a summary as JSON
+    #[arg(long)]
+    summary: Option<PathBuf>,
+    /// Write every cycle as CSV
+    #[arg(long)]
+    record: Option<PathBuf>,
+    /// Write the last cycles before a fault as CSV
+    #[arg(long, default_value = "out/flight-record.csv")]
+    flight_record: PathBuf,
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "a number".to_string())
+}
+
+fn dead_cycles(text: &str) -> Result<u8, String> {
+    let allowed = || format!("whole numbers 0 to {DEAD_CYCLES_MAX}");
+    let cycles: u8 = text.parse().map_err(|_| allowed())?;
+    Some(cycles)
+        .filter(|cycles| usize::from(*cycles) <= DEAD_CYCLES_MAX)
+        .ok_or_else(allowed)
+}
+
+/// Runs the program with the arguments of the process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return usage::report("firmware-host", &["run", "doctor"], &error),
+    };
+    let outcome = match cli.command {
+        Command::Run(options) => options.run(),
+        Command::Doctor { cycle_ms, cpu } => examine(cycle_ms, cpu),
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn examine(cycle_ms: f64, cpu: Option<usize>) -> Result<u8, Invalid> {
+    let cycle_ms = in_range("--cycle-ms", cycle_ms, 0.1, 20.0)?;
+    let findings = doctor::examine(cycle_ms / 1e3, cpu)
+        .map_err(|error| Invalid::line(error).within("loopback"))?;
+    print!("{}", findings.report());
+    Ok(0)
+}
+
+/// Where references come from.
+enum Source {
+    Scenario(ScenarioSource),
+    Stream(Stream),
+}
+
+impl ReferenceSource for Source {
+    fn start(&mut self, origin: &controller_core::measurement::Reference<f64>) {
+        match self {
+            Self::Scenario(source) => source.start(origin),
+            Self::Stream(source) => source.start(origin),
+        }
+    }
+
+    fn sample(&mut self, t_s: f64) -> Option<controller_core::measurement::Reference<f64>> {
+        match self {
+            Self::Scenario(source) => source.sample(t_s),
+            Self::Stream(source) => source.sample(t_s),
+        }
+    }
+}
+
+impl RunOptions {
+    fn run(&self) -> Result<u8, Invalid> {
+        let scenario = Scenario::find(&self.scenario)?;
+        let config = self.config(&scenario)?;
+        let mut source = self.source(&scenario)?;
+        let mut recorder = match &self.record {
+            Some(path) => Some(Recorder::create(path).map_err(|error| unwritable(path, &error))?),
+            None => None,
+        };
+        for path in self.summary.iter().chain([&self.flight_record]) {
+            prepare(path)?;
+        }
+        let socket = UdpSocket::bind(self.listen).map_err(|error| {
+            let allowed = format!("an address of this PC and a free port ({error})");
+            Invalid::new("--listen", self.listen, allowed)
+        })?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        // A second handler is the only error, and there is no first.
+        let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
+
+        let realtime = Realtime::ask(self.cpu);
+        eprintln!("{}", realtime.line());
+        eprintln!("waiting for the robot at {}", self.listen);
+        let mut session = Session::new(config);
+        let mut link = Link {
+            socket,
+            peer: self.peer,
+            wait: Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?),
+            silence: Duration::from_secs(2),
+            stop: &stop,
+        };
+        let mut flight = Flight::new();
+        let mut teller = Teller::new();
+        let required = self.required_start(&scenario)?;
+        let mut refused = None;
+        let counts = converse(
+            &mut link,
+            &mut session,
+            &mut source,
+            recorder.as_mut(),
+            |session, cycle| {
+                flight.push(cycle);
+                teller.tell(session, cycle);
+                if let (Some((start, tolerance)), Phase::Ready) = (&required, cycle.phase)
+                    && refused.is_none()
+                    && (cycle.joints.q - start).amax() > *tolerance
+                {
+                    refused = Some(cycle.joints.q);
+                    stop.store(true, Ordering::Relaxed);
+                }
+            },
+        )
+        .map_err(Invalid::line)?;
+        if let (Some(q), Some((_, tolerance))) = (refused, &required) {
+            let degrees: Vec<_> = q.iter().map(|q| format!("{:.1}", q.to_degrees())).collect();
+            return Err(Invalid::new(
+                "start posture [deg]",
+                degrees.join(" "),
+                format!(
+                    "within {:.1} deg of {:?}",
+                    tolerance.to_degrees(),
+                    scenario.start_deg
+                ),
+            ));
+        }
+
+        let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
+        let mut summary = counts.summary(&session, &self.scenario, &names, &realtime);
+        if let Some(recorder) = recorder.take() {
+            let path = self.record.as_deref().unwrap_or(Path::new("the record"));
+            summary.recorder_dropped = recorder
+                .finish()
+                .map_err(|error| unwritable(path, &error))?;
+        }
+        self.report(&summary, &flight)?;
+        Ok(summary.exit_code)
+    }
+
+    /// Files and the closing lines.
+    fn report(&self, summary: &Summary, flight: &Flight) -> Result<(), Invalid> {
+        if let Some(path) = &self.summary {
+            let json = serde_json::to_string_pretty(summary).map_err(Invalid::line)?;
+            std::fs::write(path, json + "\n").map_err(|error| unwritable(path, &error))?;
+        }
+        if summary.exit_code == 3 {
+            let path = &self.flight_record;
+            std::fs::write(path, flight.csv()).map_err(|error| unwritable(path, &error))?;
+            eprintln!(
+                "the last {} cycles are in {}",
+                flight.cycles.len(),
+                path.display()
+            );
+        }
+        print!("{}", closing(summary));
+        Ok(())
+    }
+
+    fn config(&self, scenario: &Scenario) -> Result<SessionConfig, Invalid> {
+        let duration_s = match self.duration {
+            Some(duration) => positive("--duration", duration, DURATION_MAX_S)?,
+            None => scenario.duration_s,
+        };
+        let mut config = scenario.session_config(self.dead_cycles, duration_s)?;
+        config.controller.null_space.stiffness *=
+            NullStiffness::from_name(&self.null_stiffness)?.factor();
+        config.robot_adds = match self.robot_adds.as_str() {
+            "gravity" => RobotAdds::Gravity,
+            "gravity-coriolis" => RobotAdds::GravityAndCoriolis,
+            other => {
+                let known = ["gravity", "gravity-coriolis"];
+                return Err(Invalid::name("--robot-adds", other, &known));
+            }
+        };
+        config.dry = self.dry;
+        // What the robot's cycle will be is not known yet; all else is checked now.
+        let model: &ArmModel<f64> = &config.model;
+        Controller::new(model, &config.controller)
+            .map_err(|error| Invalid::line(error).within(&scenario.name))?;
+        Ok(config)
+    }
+
+    fn source(&self, scenario: &Scenario) -> Result<Source, Invalid> {
+        let Some(address) = self.references else {
+            return Ok(Source::Scenario(ScenarioSource::new(scenario)));
+        };
+        let timeout = positive("--reference-timeout-ms", self.reference_timeout_ms, 1e4)?;
+        Stream::listen(address, Duration::from_secs_f64(timeout / 1e3))
+            .map(Source::Stream)
+            .map_err(|error| {
+                let allowed = format!("an address of this PC and a free port ({error})");
+                Invalid::new("--references", address, allowed)
+            })
+    }
+
+    /// The scenario's start posture and how far the arm may be from it \[rad\].
+    fn required_start(
+        &self,
+        scenario: &Scenario,
+    ) -> Result<Option<(JointVector<f64>, f64)>, Invalid> {
+        let Some(degrees) = self.require_start else {
+            return Ok(None);
+        };
+        let tolerance = positive("--require-start", degrees, 360.0)?;
+        Ok(Some((scenario.start(), tolerance.to_radians())))
+    }
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Invalid {
+    Invalid::new(
+        "file",
+        path.display(),
+        format_args!("a file that can be written ({error})"),
+    )
+}
+
+/// Makes the folder of a file that will be written at the end, and tries to
+/// write to it now: an hour of motion is a bad time to find out.
+fn prepare(path: &Path) -> Result<(), Invalid> {
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
+        std::fs::create_dir_all(folder).map_err(|error| unwritable(path, &error))?;
+    }
+    let file = std::fs::OpenOptions::new()
+        .append(true)
+        .create(true)
+        .open(path);
+    file.map(drop).map_err(|error| unwritable(path, &error))
+}
+
+/// The last cycles, in a ring that is taken once.
+struct Flight {
+    cycles: std::collections::VecDeque<CycleReport>,
+}
+
+impl Flight {
+    fn new() -> Self {
+        Self {
+            cycles: std::collections::VecDeque::with_capacity(FLIGHT),
+        }
+    }
+
+    fn push(&mut self, cycle: &CycleReport) {
+        if self.cycles.len() == FLIGHT {
+            self.cycles.pop_front();
+        }
+        self.cycles.push_back(*cycle);
+    }
+
+    fn csv(&self) -> String {
+        let mut text = recorder::header();
+        self.cycles
+            .iter()
+            .for_each(|cycle| text += &recorder::row(cycle));
+        text
+    }
+}
+
+/// Tells what happens, a line per change of phase.
+struct Teller {
+    phase: Phase,
+    terminal: bool,
+}
+
+impl Teller {
+    fn new() -> Self {
+        Self {
+            phase: Phase::Waiting,
+            terminal: std::io::stderr().is_terminal(),
+        }
+    }
+
+    fn tell(&mut self, session: &Session, cycle: &CycleReport) {
+        if cycle.phase == self.phase {
+            return;
+        }
+        // Printing takes time and memory: rarely, and not while nobody looks.
+        if self.terminal || self.phase == Phase::Waiting {
+            let audit = crate::summary::AuditSummary::from(session.audit());
+            let mut line = format!("{:8.3} s  {}", cycle.t_s, cycle.phase.name());
+            if self.phase == Phase::Waiting {
+                let _ = write!(line, "; robot's model: {audit}");
+            }
+            eprintln!("{line}");
+        }
+        self.phase = cycle.phase;
+    }
+}
+
+/// The closing lines.
+fn closing(summary: &Summary) -> String {
+    let mut text = format!(
+        "{}: {} answers, {}\n",
+        summary.scenario, summary.answered, summary.reason
+    );
+    for (number, level) in (1..).zip(&summary.levels) {
+        let _ = writeln!(
+            text,
+            "level {number} {}: rms {:.3}, max {:.3} (mm, or mrad of an orientation; from measured positions)",
+            level.name, level.rms, level.max
+        );
+    }
+    let link = &summary.link;
+    let rejected: u64 = link.rejected.values().sum();
+    let _ = writeln!(
+        text,
+        "link: {} lost, {} stale, {rejected} rejected, {} from strangers",
+        link.lost, link.stale, link.strangers
+    );
+    let _ = writeln!(text, "robot's model: {}", summary.audit);
+    let _ = writeln!(text, "compute: {}", summary.compute);
+    let _ = writeln!(text, "latency: {}", summary.latency);
+    text
+}

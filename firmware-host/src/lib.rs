@@ -1,0 +1,23 @@
+//! The controller core on a PC, linked to a robot by KUKA's FRI over UDP.
+//!
+//! All that is here is around the conversation, which is in the `bridge` crate:
+//!
+//! - [`cli`]: the command line;
+//! - [`run`]: the socket loop: one datagram in, one out;
+//! - [`realtime`]: scheduling, memory and processor as far as the system permits;
+//! - [`timing`]: histograms of compute time and latency;
+//! - [`recorder`]: every cycle to a file, without blocking the loop;
+//! - [`stream`]: references that arrive over UDP;
+//! - [`summary`]: what a run was;
+//! - [`doctor`]: can this PC hold the cycle?
+//!
+//! docs/fri.md leads from a fresh PC to a moving robot.
+
+pub mod cli;
+pub mod doctor;
+pub mod realtime;
+pub mod recorder;
+pub mod run;
+pub mod stream;
+pub mod summary;
+pub mod timing;

@@ -1,0 +1,115 @@
+//! Every cycle to a file, without blocking the loop: a bounded queue and a writer
+//! thread. A full queue drops the cycle and counts it.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+use bridge::session::CycleReport;
+use controller_core::joint::DOF;
+
+/// Cycles that fit into the queue: 8 s at 2 ms.
+const QUEUE: usize = 4096;
+
+/// The loop's end of the queue, and the thread behind it.
+#[derive(Debug)]
+pub struct Recorder {
+    queue: Option<SyncSender<CycleReport>>,
+    writer: Option<JoinHandle<io::Result<()>>>,
+    dropped: u64,
+}
+
+impl Recorder {
+    /// Writes a header to `path` and waits for cycles.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let mut file = BufWriter::new(File::create(path)?);
+        file.write_all(header().as_bytes())?;
+        let (queue, cycles) = sync_channel(QUEUE);
+        let writer = std::thread::Builder::new()
+            .name("recorder".into())
+            .spawn(move || write_all(file, &cycles))?;
+        Ok(Self {
+            queue: Some(queue),
+            writer: Some(writer),
+            dropped: 0,
+        })
+    }
+
+    /// Hands over a cycle; never waits.
+    pub fn push(&mut self, cycle: &CycleReport) {
+        let full = (self.queue.as_ref()).is_none_or(|queue| queue.try_send(*cycle).is_err());
+        self.dropped += u64::from(full);
+    }
+
+    /// Waits until everything is written. Returns the number of cycles dropped.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn finish(mut self) -> io::Result<u64> {
+        // Closing the queue ends the thread.
+        self.queue = None;
+        let result = self.writer.take().map(JoinHandle::join);
+        match result {
+            Some(Ok(written)) => written.map(|()| self.dropped),
+            _ => Err(io::Error::other("the recorder's thread ended early")),
+        }
+    }
+}
+
+fn write_all(mut file: BufWriter<File>, cycles: &Receiver<CycleReport>) -> io::Result<()> {
+    for cycle in cycles {
+        file.write_all(row(&cycle).as_bytes())?;
+    }
+    file.flush()
+}
+
+/// Names of the columns.
+#[must_use]
+pub fn header() -> String {
+    let mut line = String::from("counter,lost,phase,state,quality,t");
+    for name in ["q", "dq", "tau", "sent", "r"] {
+        for joint in 1..=DOF {
+            line += &format!(",{name}{joint}");
+        }
+    }
+    line + ",fault,saturated,rank\n"
+}
+
+/// One cycle: SI units, 17 significant digits; torque and residual are empty where
+/// the controller did not run.
+#[must_use]
+pub fn row(cycle: &CycleReport) -> String {
+    let mut line = format!(
+        "{},{},{},{:?},{:?},{:.16e}",
+        cycle.counter,
+        cycle.lost,
+        cycle.phase.name(),
+        cycle.robot.state,
+        cycle.robot.quality,
+        cycle.t_s
+    );
+    let step = cycle.step.as_ref();
+    let vectors = [
+        Some(&cycle.joints.q),
+        Some(&cycle.joints.dq),
+        step.map(|step| &step.torque),
+        Some(&cycle.sent),
+        step.map(|step| &step.residual),
+    ];
+    for vector in vectors {
+        for joint in 0..DOF {
+            match vector {
+                Some(vector) => line += &format!(",{:.16e}", vector[joint]),
+                None => line.push(','),
+            }
+        }
+    }
+    let status = step.map(|step| step.status).unwrap_or_default();
+    let fault = status.fault.map_or(0, |fault| fault.kind as u8);
+    line + &format!(",{fault},{},{}\n", status.saturated.0, status.rank.0)
+}

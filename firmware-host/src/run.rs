@@ -1,0 +1,241 @@
+//! The socket loop: one datagram in, one out.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::net::{SocketAddr, UdpSocket};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use bridge::guide::ReferenceSource;
+use bridge::session::{ANSWER_LEN, CycleReport, Outcome, Phase, Session};
+use controller_core::joint::Vector3;
+use controller_core::orientation;
+use controller_core::task::{Axes, MAX_LEVELS, TaskKind};
+
+use crate::realtime::Realtime;
+use crate::recorder::Recorder;
+use crate::summary::{AuditSummary, LevelSummary, LinkSummary, Summary, ending};
+use crate::timing::Times;
+
+/// Longest datagram that is looked at; a measurement has 916 bytes.
+const BUFFER: usize = 2048;
+
+/// How often the loop looks up while nothing arrives.
+const LOOK_UP: Duration = Duration::from_millis(20);
+
+/// What the loop needs besides a session.
+#[derive(Debug)]
+pub struct Link<'a> {
+    /// Bound to where the robot sends.
+    pub socket: UdpSocket,
+    /// The only address that is answered; the first that sends a measurement if
+    /// none is given.
+    pub peer: Option<SocketAddr>,
+    /// How long to wait for a first measurement.
+    pub wait: Duration,
+    /// Silence after which the robot is taken for gone.
+    pub silence: Duration,
+    /// Set from outside: come to rest and end.
+    pub stop: &'a AtomicBool,
+}
+
+/// What a loop has counted.
+#[derive(Clone, Debug, Default)]
+pub struct Counts {
+    answered: u64,
+    phases: [u64; PHASES.len()],
+    link: LinkSummary,
+    tracking: [Tracking; MAX_LEVELS],
+    compute: Times,
+    latency: Times,
+}
+
+const PHASES: [Phase; 7] = [
+    Phase::Waiting,
+    Phase::Ready,
+    Phase::Starting,
+    Phase::Moving,
+    Phase::Holding,
+    Phase::Stopping,
+    Phase::Finished,
+];
+
+/// Running figures of a level.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tracking {
+    squares: f64,
+    count: u64,
+    max: f64,
+}
+
+/// Answers the robot until the session is over. `each` sees every answered cycle.
+///
+/// # Errors
+/// The socket fails.
+pub fn converse(
+    link: &mut Link<'_>,
+    session: &mut Session,
+    source: &mut impl ReferenceSource,
+    mut recorder: Option<&mut Recorder>,
+    mut each: impl FnMut(&Session, &CycleReport),
+) -> io::Result<Counts> {
+    let mut counts = Counts::default();
+    let (mut bytes, mut answer) = ([0; BUFFER], [0; ANSWER_LEN]);
+    let mut heard = Instant::now();
+    link.socket.set_read_timeout(Some(LOOK_UP))?;
+    loop {
+        if link.stop.load(Ordering::Relaxed) {
+            session.stop();
+        }
+        match link.socket.recv_from(&mut bytes) {
+            Ok((length, from)) => {
+                let begin = Instant::now();
+                if link.peer.is_some_and(|peer| peer != from) {
+                    counts.link.strangers += 1;
+                    continue;
+                }
+                let datagram = bytes.get(..length).unwrap_or(&bytes);
+                let outcome = session.receive(datagram, source, &mut answer);
+                let computed = begin.elapsed();
+                match outcome {
+                    Outcome::Answered => {
+                        link.socket.send_to(&answer, from)?;
+                        let latency = begin.elapsed();
+                        heard = begin;
+                        link.peer = Some(from);
+                        counts.compute.add(computed);
+                        counts.latency.add(latency);
+                        if let Some(cycle) = session.last() {
+                            counts.add(session, cycle);
+                            if let Some(recorder) = &mut recorder {
+                                recorder.push(cycle);
+                            }
+                            each(session, cycle);
+                        }
+                    }
+                    Outcome::Stale => counts.link.stale += 1,
+                    Outcome::Rejected(error) => counts.reject(&error.to_string()),
+                    Outcome::Unusable(error) => {
+                        return Err(io::Error::other(format!("the robot's cycle: {error}")));
+                    }
+                }
+            }
+            Err(error) if is_timeout(&error) => {
+                let patience = match session.phase() {
+                    Phase::Waiting => link.wait,
+                    _ => link.silence,
+                };
+                let stopped = session.stop_reason().is_some();
+                if heard.elapsed() > patience || (stopped && heard.elapsed() > LOOK_UP * 10) {
+                    session.silent();
+                    return Ok(counts);
+                }
+            }
+            // The robot's port is closed: it may open again.
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
+            Err(error) => return Err(error),
+        }
+        if session.phase() == Phase::Finished {
+            return Ok(counts);
+        }
+    }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}
+
+impl Counts {
+    fn reject(&mut self, reason: &str) {
+        // Rare, so it may allocate; bounded, whatever arrives.
+        const REASONS: usize = 32;
+        let known = self.link.rejected.len() < REASONS || self.link.rejected.contains_key(reason);
+        let reason = if known { reason } else { "other" };
+        *self.link.rejected.entry(reason.to_string()).or_default() += 1;
+    }
+
+    fn add(&mut self, session: &Session, cycle: &CycleReport) {
+        self.answered += 1;
+        self.link.lost += u64::from(cycle.lost);
+        for (phase, count) in PHASES.iter().zip(&mut self.phases) {
+            *count += u64::from(*phase == cycle.phase);
+        }
+        let moving = matches!(cycle.phase, Phase::Moving | Phase::Holding);
+        let Some(controller) = session.controller().filter(|_| moving) else {
+            return;
+        };
+        let actual = controller.rest(&cycle.joints.q);
+        let levels = controller.tasks().iter().zip(&mut self.tracking);
+        let references = session.reference().tasks.iter().zip(&actual.tasks);
+        for ((task, tracking), (wanted, actual)) in levels.zip(references) {
+            let error = match task.kind {
+                TaskKind::Position => wanted.x - actual.x,
+                TaskKind::Orientation => {
+                    orientation::error(&wanted.orientation, &actual.orientation)
+                }
+            };
+            tracking.add(norm(task.axes, &error));
+        }
+    }
+
+    /// Everything about a session that has ended.
+    #[must_use]
+    pub fn summary(
+        &self,
+        session: &Session,
+        scenario: &str,
+        names: &[String],
+        realtime: &Realtime,
+    ) -> Summary {
+        let (exit_code, reason) = ending(session);
+        let phases: BTreeMap<_, _> = PHASES
+            .iter()
+            .zip(self.phases)
+            .filter(|(_, count)| *count > 0)
+            .map(|(phase, count)| (phase.name(), count))
+            .collect();
+        let levels = names.iter().zip(&self.tracking);
+        Summary {
+            scenario: scenario.into(),
+            reason,
+            exit_code,
+            cycle_ms: session.cycle_s() * 1e3,
+            answered: self.answered,
+            phases,
+            levels: levels.map(|(name, sums)| sums.figures(name)).collect(),
+            link: self.link.clone(),
+            audit: AuditSummary::from(session.audit()),
+            compute: self.compute.figures(),
+            latency: self.latency.figures(),
+            realtime: realtime.clone(),
+            recorder_dropped: 0,
+        }
+    }
+}
+
+fn norm(axes: Axes, error: &Vector3<f64>) -> f64 {
+    let controlled = error.iter().zip(axes.xyz).filter(|(_, on)| *on);
+    controlled
+        .map(|(value, _)| value * value)
+        .sum::<f64>()
+        .sqrt()
+}
+
+impl Tracking {
+    fn add(&mut self, error: f64) {
+        self.squares += error * error;
+        self.count += 1;
+        self.max = self.max.max(error);
+    }
+
+    fn figures(&self, name: &str) -> LevelSummary {
+        LevelSummary {
+            name: name.into(),
+            rms: (self.squares / self.count.max(1) as f64).sqrt() * 1e3,
+            max: self.max * 1e3,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What a run was: the file that `--summary` writes.
+
+use std::collections::BTreeMap;
+
+use bridge::audit::Audit;
+use bridge::session::{Phase, Session, StopReason};
+use serde::Serialize;
+
+use crate::realtime::Realtime;
+use crate::timing::TimeFigures;
+
+/// The whole run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Where the motion came from.
+    pub scenario: String,
+    /// Why it ended.
+    pub reason: String,
+    /// Exit code of the program.
+    pub exit_code: u8,
+    /// Cycle of the robot \[ms\].
+    pub cycle_ms: f64,
+    /// Answered measurements.
+    pub answered: u64,
+    /// Cycles per phase.
+    pub phases: BTreeMap<&'static str, u64>,
+    /// Tracking as the bridge sees it, from measured positions.
+    pub levels: Vec<LevelSummary>,
+    /// Datagrams that were not answered, and measurements that never came.
+    pub link: LinkSummary,
+    /// The robot's model against the controller's.
+    pub audit: AuditSummary,
+    /// From the datagram's arrival in the program to the finished answer.
+    pub compute: TimeFigures,
+    /// The same to the end of sending.
+    pub latency: TimeFigures,
+    /// What the system gave.
+    pub realtime: Realtime,
+    /// Recorded cycles that found the queue full.
+    pub recorder_dropped: u64,
+}
+
+/// Tracking of one level from time 0 on.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LevelSummary {
+    /// Point and axes.
+    pub name: String,
+    /// rms \[mm\], or \[mrad\] of an orientation.
+    pub rms: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Counts of the link.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LinkSummary {
+    /// Measurements that did not come, by their counters.
+    pub lost: u64,
+    /// Repeated or overtaken measurements.
+    pub stale: u64,
+    /// Datagrams that are not usable measurements, by reason.
+    pub rejected: BTreeMap<String, u64>,
+    /// Datagrams from other addresses than the robot's.
+    pub strangers: u64,
+}
+
+/// The audit in words and numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct AuditSummary {
+    /// Postures compared.
+    pub samples: u32,
+    /// "agrees", "not sent", "opposite sign" or "differs".
+    pub gravity: &'static str,
+    /// Largest difference \[Nm\].
+    pub gravity_nm: f64,
+    /// The same of the mass matrix.
+    pub mass_matrix: &'static str,
+    /// Largest difference over the largest entry.
+    pub mass_share: f64,
+    /// The same of the Jacobian.
+    pub jacobian: &'static str,
+    /// Largest difference, \[m\] or \[1\].
+    pub jacobian_error: f64,
+}
+
+impl From<&Audit> for AuditSummary {
+    fn from(audit: &Audit) -> Self {
+        Self {
+            samples: audit.samples,
+            gravity: audit.gravity.name(),
+            gravity_nm: audit.gravity_nm,
+            mass_matrix: audit.mass.name(),
+            mass_share: audit.mass_share,
+            jacobian: audit.jacobian.name(),
+            jacobian_error: audit.jacobian_error,
+        }
+    }
+}
+
+impl std::fmt::Display for AuditSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "gravity {} ({:.2} Nm), mass matrix {} ({:.1} %), Jacobian {} ({:.4})",
+            self.gravity,
+            self.gravity_nm,
+            self.mass_matrix,
+            self.mass_share * 100.0,
+            self.jacobian,
+            self.jacobian_error
+        )
+    }
+}
+
+/// Exit code and reason of a session that has ended, or of one that never began.
+#[must_use]
+pub fn ending(session: &Session) -> (u8, String) {
+    match (session.stop_reason(), session.phase()) {
+        (_, Phase::Waiting) => (4, "no robot: no measurement arrived".into()),
+        (Some(StopReason::Done), _) => (0, "the motion is over".into()),
+        (Some(StopReason::Asked), _) => (0, "stopped by request".into()),
+        (Some(StopReason::Link), _) => (3, "the link was bad for too long".into()),
+        (Some(StopReason::Fault), _) => {
+            let fault = session.fault().map(|fault| fault.to_string());
+            (3, fault.unwrap_or_else(|| "fault".into()))
+        }
+        (None, Phase::Ready) => (4, "the robot fell silent without command state".into()),
+        (None, _) => (4, "the robot fell silent".into()),
+    }
+}

@@ -1,0 +1,68 @@
+//! A scenario as the bridge runs it: configuration of the session, and its
+//! reference motion.
+
+use bridge::guide::ReferenceSource;
+use bridge::session::SessionConfig;
+use controller_core::law::NullDamping;
+use controller_core::measurement::Reference;
+use controller_core::model::{ArmModel, LWR_IV_POINTS};
+
+use super::{PointSpec, ReferenceSpec, Scenario};
+use crate::invalid::Invalid;
+
+impl Scenario {
+    /// The session that runs this scenario for `duration_s` \[s\] on a robot whose
+    /// torques act `dead_cycles` cycles after they arrive. The null-space damping
+    /// is the inertia-shaped one: speeds come from an estimator, which is late.
+    ///
+    /// # Errors
+    /// Tables of the arm that cannot be.
+    pub fn session_config(
+        &self,
+        dead_cycles: u8,
+        duration_s: f64,
+    ) -> Result<SessionConfig, Invalid> {
+        let model = ArmModel::new(self.arm()).map_err(Invalid::line)?;
+        let mut controller = self.controller_config(dead_cycles);
+        controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
+        let [.., flange] = LWR_IV_POINTS;
+        let flange = PointSpec::Name(flange.name.into()).resolve();
+        Ok(SessionConfig::new(&model, controller, flange, duration_s))
+    }
+}
+
+/// The reference motion of a scenario, from wherever the arm is at the start.
+#[derive(Clone, Debug)]
+pub struct ScenarioSource {
+    levels: Vec<ReferenceSpec>,
+    origin: Reference<f64>,
+}
+
+impl ScenarioSource {
+    /// Of all levels.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            levels: (scenario.levels.iter())
+                .map(|level| level.reference.clone())
+                .collect(),
+            origin: Reference::new(),
+        }
+    }
+}
+
+impl ReferenceSource for ScenarioSource {
+    fn start(&mut self, origin: &Reference<f64>) {
+        self.origin.clone_from(origin);
+    }
+
+    fn sample(&mut self, t_s: f64) -> Option<Reference<f64>> {
+        let levels = self.levels.iter().zip(&self.origin.tasks);
+        Some(Reference {
+            tasks: levels
+                .map(|(reference, origin)| reference.sample(origin, t_s))
+                .collect(),
+            posture: self.origin.posture,
+        })
+    }
+}
