@@ -101,7 +101,8 @@ pub struct LinkFigures {
     /// How often it was reached again.
     pub recoveries: u64,
     /// Largest change of a joint's torque from one cycle to the next while the
-    /// robot bridged a missing answer or changed its way of driving \[Nm\].
+    /// robot bridged a missing answer or changed its way of driving, without what
+    /// the client ordered \[Nm\].
     pub largest_torque_step_nm: f64,
     /// What happened, at most [`EVENTS_MAX`] of them.
     pub events: Vec<Event>,

@@ -70,6 +70,10 @@ pub struct Krc {
     good: u64,
     passage: Passage,
     last: Driving,
+    /// Added torque of orders that arrived in the last cycle \[Nm\], and how much it
+    /// differs from the cycle before.
+    arrived: JointVector<f64>,
+    change: JointVector<f64>,
     /// int\[1\] of the KRL program.
     answer_int: i32,
     left: bool,
@@ -107,6 +111,8 @@ impl Krc {
             good: 0,
             passage: Passage::none(cycles(options.fade_s, cycle_s), cycle_s),
             last: Driving::by_springs(Impedance::none()),
+            arrived: JointVector::zeros(),
+            change: JointVector::zeros(),
             answer_int: 10,
             left: false,
             fallbacks: 0,
@@ -162,6 +168,12 @@ impl Krc {
         self.passage.is_running() || (self.state == State::Command && self.age > 0)
     }
 
+    /// Change of torque in the last cycle that the client ordered \[Nm\].
+    #[must_use]
+    pub fn ordered_change(&self) -> &JointVector<f64> {
+        &self.change
+    }
+
     /// What there is to say since the last call.
     pub fn take_messages(&mut self) -> Vec<String> {
         std::mem::take(&mut self.messages)
@@ -206,8 +218,7 @@ impl Krc {
             } else {
                 ((position[joint] - q[joint]).abs(), self.options.jump_rad)
             };
-            // Written so that a number that is none fails.
-            if !(moved <= allowed) {
+            if moved > allowed {
                 // A row of them is one event.
                 if !std::mem::replace(&mut self.jumping, true) {
                     self.say(format!(
@@ -285,6 +296,15 @@ impl Krc {
             )),
             State::Command => self.ordered(now, added),
         };
+        // In monitor state nothing arrives: what fades then is the link's doing.
+        let ordered = self.state == State::Command;
+        let change = wanted.torque - self.arrived;
+        self.change = if ordered {
+            change
+        } else {
+            JointVector::zeros()
+        };
+        self.arrived = wanted.torque;
         self.last = self.passage.blend(&wanted);
         self.from = self.commanded;
         self.consider(now);

@@ -321,7 +321,8 @@ impl Robot {
             }
         }
         if let (Some(last), true) = (self.applied, bridging) {
-            self.counters.step = self.counters.step.max((applied - last).amax());
+            let by_link = applied - last - self.krc.ordered_change();
+            self.counters.step = self.counters.step.max(by_link.amax());
         }
         self.applied = Some(applied);
         let t_s = self.time_s();

@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn jitter_costs_perfection() {
         // Alternating by +-a has the standard deviation a.
-        let jitter = |a: f64| move |n: usize| Some(1e-3 + if n % 2 == 0 { a } else { -a });
+        let jitter = |a: f64| move |n: usize| Some(1e-3 + if n.is_multiple_of(2) { a } else { -a });
         let calm = rated(jitter(0.49e-3), 200);
         assert_eq!(calm.quality(), Quality::Perfect);
         assert!((calm.statistics().jitter_s - 0.49e-3).abs() < 1e-12);
