@@ -15,180 +15,26 @@
 //! In every state every fresh datagram gets one answer, with the same flags. Only
 //! in `Starting`, `Moving`, `Holding` and `Stopping` does an answer carry torque.
 
-use controller_core::config::{ConfigError, ControllerConfig};
-use controller_core::controller::{Controller, ControllerState, Step};
+mod config;
+mod report;
+
+use controller_core::config::ConfigError;
+use controller_core::controller::{Controller, ControllerState};
 use controller_core::joint::{DOF, JointState, JointVector, zeros};
-use controller_core::kinematics::LinkPoint;
 use controller_core::measurement::{INTERVAL_FACTORS, Measurement, Reference};
-use controller_core::model::ArmModel;
 use controller_core::real::Real;
 use controller_core::trajectory::quintic;
 use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
 
 use crate::audit::Audit;
-use crate::guide::{Guide, GuideTimes, ReferenceSource};
+use crate::guide::{Guide, ReferenceSource};
 use crate::link::Link;
 use crate::sent::SentTorques;
 use crate::wire::{Incoming, Outgoing, measured};
 
+pub use self::config::{RobotAdds, SessionConfig};
+pub use self::report::{CycleReport, Outcome, Phase, StopReason};
 pub use crate::wire::{ANSWER_LEN, RobotState};
-
-/// What the robot adds to the torque that it is sent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RobotAdds {
-    /// Gravity g(q).
-    #[default]
-    Gravity,
-    /// Gravity and Coriolis torque.
-    GravityAndCoriolis,
-}
-
-/// What a session is made of. Times are in s, counts in cycles.
-#[derive(Clone, Debug)]
-pub struct SessionConfig {
-    /// The arm that the controller believes in.
-    pub model: ArmModel<f64>,
-    /// Tasks and gains. The cycle comes from the robot.
-    pub controller: ControllerConfig<f64>,
-    /// The flange, for the audit of the robot's Jacobian.
-    pub flange: LinkPoint<f64>,
-    /// What must not be sent.
-    pub robot_adds: RobotAdds,
-    /// Between the first command state and time 0 of the motion; the posture is held.
-    pub settle_s: f64,
-    /// In which the torque grows from zero on entering command state.
-    pub ramp_s: f64,
-    /// Length of the motion, from time 0.
-    pub duration_s: f64,
-    /// Transitions of the reference.
-    pub guide: GuideTimes,
-    /// Lost measurements, or commands that the robot does not have, after which
-    /// the arm is held.
-    pub hold_after: u16,
-    /// Clean cycles after which a held arm moves on.
-    pub resume_after: u16,
-    /// Time held after which the session stops.
-    pub stop_after_s: f64,
-    /// Never move the robot: audit, and torques as they would be.
-    pub dry: bool,
-}
-
-impl SessionConfig {
-    /// With the times and counts of a robot on a wired network.
-    #[must_use]
-    pub fn new(
-        model: &ArmModel<f64>,
-        controller: ControllerConfig<f64>,
-        flange: LinkPoint<f64>,
-        duration_s: f64,
-    ) -> Self {
-        Self {
-            model: *model,
-            controller,
-            flange,
-            robot_adds: RobotAdds::Gravity,
-            settle_s: 1.0,
-            ramp_s: 0.5,
-            duration_s,
-            guide: GuideTimes::default(),
-            hold_after: 5,
-            resume_after: 50,
-            stop_after_s: 2.0,
-            dry: false,
-        }
-    }
-}
-
-/// Where the conversation stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// No datagram yet.
-    Waiting,
-    /// The robot talks and is not in command state, or its drives are off.
-    Ready,
-    /// In command, torque grows, posture held until time 0.
-    Starting,
-    /// The wanted motion.
-    Moving,
-    /// In command, held because the link cannot carry the motion.
-    Holding,
-    /// Coming to rest, then held by the robot's own stiffness.
-    Stopping,
-    /// At rest after the end, or the robot has left command state after it.
-    Finished,
-}
-
-impl Phase {
-    /// One word for reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Ready => "ready",
-            Self::Starting => "starting",
-            Self::Moving => "moving",
-            Self::Holding => "holding",
-            Self::Stopping => "stopping",
-            Self::Finished => "finished",
-        }
-    }
-
-    /// Whether answers carry torque.
-    #[must_use]
-    pub fn is_in_command(self) -> bool {
-        matches!(
-            self,
-            Self::Starting | Self::Moving | Self::Holding | Self::Stopping
-        )
-    }
-}
-
-/// Why a session stops early.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum StopReason {
-    /// The motion is over.
-    Done,
-    /// [`Session::stop`] was called.
-    Asked,
-    /// The controller latched a fault, see [`Session::fault`].
-    Fault,
-    /// The link was bad for longer than allowed.
-    Link,
-}
-
-/// What became of a datagram.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
-    /// It is answered.
-    Answered,
-    /// It is not a measurement that can be used: no answer.
-    Rejected(fri::Error),
-    /// It was answered before, or is older than one that was: no answer.
-    Stale,
-    /// The controller cannot work at the robot's cycle: no answer.
-    Unusable(ConfigError),
-}
-
-/// One answered cycle.
-#[derive(Clone, Copy, Debug)]
-pub struct CycleReport {
-    /// Where the conversation stands.
-    pub phase: Phase,
-    /// Scenario time \[s\]; before 0 while the arm settles. Zero before command state.
-    pub t_s: f64,
-    /// Counter of the measurement.
-    pub counter: u16,
-    /// Measurements lost just before this one.
-    pub lost: u16,
-    /// What the robot says of itself.
-    pub robot: RobotState,
-    /// Measured position \[rad\] and estimated speed \[rad/s\].
-    pub joints: JointState<f64>,
-    /// The controller's cycle; none where it did not run.
-    pub step: Option<Step<f64>>,
-    /// Torque sent \[Nm\], as the robot gets it.
-    pub sent: JointVector<f64>,
-}
 
 /// The session: configuration, controller, and everything that changes.
 #[derive(Clone, Debug)]
@@ -387,14 +233,12 @@ impl Session {
         (self.cycle - first_command) as i64 - settle
     }
 
-    /// Whether the motion has had all its cycles.
-    fn is_over(&self, first_command: u64) -> bool {
-        let all = cycles(self.config.duration_s, self.cycle_s);
-        self.cycles_since(first_command) >= all
-    }
-
     fn advance_phase(&mut self, incoming: &Incoming, lost: u16, source: &mut impl ReferenceSource) {
-        let over = (self.first_command).is_some_and(|first| self.is_over(first));
+        let all = cycles(self.config.duration_s, self.cycle_s);
+        let over = match self.first_command {
+            None => self.config.dry && self.cycle as i64 > all,
+            Some(first) => self.cycles_since(first) >= all,
+        };
         if !incoming.robot.takes_torque() || self.config.dry {
             self.leave_command();
             if over {

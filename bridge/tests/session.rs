@@ -347,6 +347,7 @@ fn a_fault_of_the_controller_gives_the_arm_to_the_robot() {
 fn dry_it_computes_and_moves_nothing() {
     let mut settings = config(1.0);
     settings.dry = true;
+    settings.duration_s = 60.0;
     let mut robot = Robot::new(Session::new(settings));
     robot.enter();
     for _ in 0..2000 {

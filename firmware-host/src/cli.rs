@@ -179,13 +179,18 @@ impl RunOptions {
         let scenario = Scenario::find(&self.scenario)?;
         let config = self.config(&scenario)?;
         let mut source = self.source(&scenario)?;
+        for path in self
+            .summary
+            .iter()
+            .chain(&self.record)
+            .chain([&self.flight_record])
+        {
+            prepare(path)?;
+        }
         let mut recorder = match &self.record {
             Some(path) => Some(Recorder::create(path).map_err(|error| unwritable(path, &error))?),
             None => None,
         };
-        for path in self.summary.iter().chain([&self.flight_record]) {
-            prepare(path)?;
-        }
         let socket = UdpSocket::bind(self.listen).map_err(|error| {
             let allowed = format!("an address of this PC and a free port ({error})");
             Invalid::new("--listen", self.listen, allowed)
@@ -241,6 +246,23 @@ impl RunOptions {
             ));
         }
 
+        if session.phase() == Phase::Waiting {
+            let (at, wait) = (self.listen, self.wait);
+            eprintln!("error: no robot: no measurement came to {at} within {wait} s");
+            return Ok(4);
+        }
+        if let Some(step) = session
+            .last()
+            .and_then(|cycle| cycle.step)
+            .filter(|_| self.dry)
+        {
+            let torque: JointVector<f64> = step.torque - step.gravity;
+            let torque: Vec<_> = torque.iter().map(|value| format!("{value:.2}")).collect();
+            println!(
+                "dry: the last torque would have been {} Nm",
+                torque.join(" ")
+            );
+        }
         let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
         let mut summary = counts.summary(&session, &self.scenario, &names, &realtime);
         if let Some(recorder) = recorder.take() {
@@ -339,11 +361,17 @@ fn prepare(path: &Path) -> Result<(), Invalid> {
     {
         std::fs::create_dir_all(folder).map_err(|error| unwritable(path, &error))?;
     }
+    let there = path.exists();
     let file = std::fs::OpenOptions::new()
         .append(true)
         .create(true)
         .open(path);
-    file.map(drop).map_err(|error| unwritable(path, &error))
+    file.map(drop).map_err(|error| unwritable(path, &error))?;
+    if !there {
+        // It only had to be possible.
+        std::fs::remove_file(path).map_err(|error| unwritable(path, &error))?;
+    }
+    Ok(())
 }
 
 /// The last cycles, in a ring that is taken once.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use bridge::audit::Audit;
+use bridge::audit::{Agreement, Audit};
 use bridge::session::{Phase, Session, StopReason};
 use serde::Serialize;
 
@@ -85,13 +85,17 @@ pub struct AuditSummary {
 
 impl From<&Audit> for AuditSummary {
     fn from(audit: &Audit) -> Self {
+        let name = |agreement: Agreement| match audit.samples {
+            0 => "not compared",
+            _ => agreement.name(),
+        };
         Self {
             samples: audit.samples,
-            gravity: audit.gravity.name(),
+            gravity: name(audit.gravity),
             gravity_nm: audit.gravity_nm,
-            mass_matrix: audit.mass.name(),
+            mass_matrix: name(audit.mass),
             mass_share: audit.mass_share,
-            jacobian: audit.jacobian.name(),
+            jacobian: name(audit.jacobian),
             jacobian_error: audit.jacobian_error,
         }
     }

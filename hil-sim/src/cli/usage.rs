@@ -37,6 +37,10 @@ fn line(program: &str, commands: &[&str], error: &clap::Error) -> String {
         ErrorKind::UnknownArgument => {
             format!("unknown argument '{given}'{nearest} allowed: see '{program} --help'")
         }
+        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            let all = commands.join(", ");
+            format!("command: none given; allowed: {all}; see '{program} --help'")
+        }
         ErrorKind::InvalidSubcommand => {
             let given = context(ContextKind::InvalidSubcommand).unwrap_or_default();
             Invalid::name("command", &given, commands).to_string()

@@ -215,7 +215,7 @@ mod tests {
     use super::*;
     use crate::controllers::ControllerKind;
     use crate::experiment::Experiment;
-    use crate::names::NullStiffness;
+    use crate::names::{MeasurementKind, NullStiffness};
     use crate::plant::{PlantKind, PlantOptions};
     use controller_core::joint::JointVector;
 
@@ -229,6 +229,7 @@ mod tests {
             contacts: true,
             controller: ControllerKind::Hierarchical,
             null_stiffness: NullStiffness::Normal,
+            measurement: MeasurementKind::Direct,
             seed: 1,
             options: PlantOptions::default(),
         };

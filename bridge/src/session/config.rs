@@ -1,0 +1,73 @@
+//! What a session is made of.
+
+use controller_core::config::ControllerConfig;
+use controller_core::kinematics::LinkPoint;
+use controller_core::model::ArmModel;
+
+use crate::guide::GuideTimes;
+
+/// What the robot adds to the torque that it is sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RobotAdds {
+    /// Gravity g(q).
+    #[default]
+    Gravity,
+    /// Gravity and Coriolis torque.
+    GravityAndCoriolis,
+}
+
+/// What a session is made of. Times are in s, counts in cycles.
+#[derive(Clone, Debug)]
+pub struct SessionConfig {
+    /// The arm that the controller believes in.
+    pub model: ArmModel<f64>,
+    /// Tasks and gains. The cycle comes from the robot.
+    pub controller: ControllerConfig<f64>,
+    /// The flange, for the audit of the robot's Jacobian.
+    pub flange: LinkPoint<f64>,
+    /// What must not be sent.
+    pub robot_adds: RobotAdds,
+    /// Between the first command state and time 0 of the motion; the posture is held.
+    pub settle_s: f64,
+    /// In which the torque grows from zero on entering command state.
+    pub ramp_s: f64,
+    /// Length of the motion, from time 0; of a dry session, from the first datagram.
+    pub duration_s: f64,
+    /// Transitions of the reference.
+    pub guide: GuideTimes,
+    /// Lost measurements, or commands that the robot does not have, after which
+    /// the arm is held.
+    pub hold_after: u16,
+    /// Clean cycles after which a held arm moves on.
+    pub resume_after: u16,
+    /// Time held after which the session stops.
+    pub stop_after_s: f64,
+    /// Never move the robot: audit, and torques as they would be.
+    pub dry: bool,
+}
+
+impl SessionConfig {
+    /// With the times and counts of a robot on a wired network.
+    #[must_use]
+    pub fn new(
+        model: &ArmModel<f64>,
+        controller: ControllerConfig<f64>,
+        flange: LinkPoint<f64>,
+        duration_s: f64,
+    ) -> Self {
+        Self {
+            model: *model,
+            controller,
+            flange,
+            robot_adds: RobotAdds::Gravity,
+            settle_s: 1.0,
+            ramp_s: 0.5,
+            duration_s,
+            guide: GuideTimes::default(),
+            hold_after: 5,
+            resume_after: 50,
+            stop_after_s: 2.0,
+            dry: false,
+        }
+    }
+}
