@@ -89,6 +89,14 @@ impl Guide {
         self.mode
     }
 
+    /// Comes to rest from `place`, which may move.
+    pub fn brake_from(&mut self, place: &Reference<f64>) {
+        self.mode = GuideMode::Holding;
+        self.elapsed_s = 0.0;
+        self.from.clone_from(place);
+        self.last.clone_from(place);
+    }
+
     /// Rests at `place`.
     pub fn rest(&mut self, place: &Reference<f64>) {
         self.mode = GuideMode::Holding;

@@ -105,6 +105,12 @@ impl Link {
         self.bad
     }
 
+    /// Whether, in this cycle, the motion is out of the controller's hands:
+    /// measurements were missing, or commands are not heard.
+    pub fn is_broken(&self) -> bool {
+        self.bad && self.clean == 0
+    }
+
     /// Forgets the trouble of before.
     pub fn clear(&mut self) {
         self.bad = false;

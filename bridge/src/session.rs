@@ -518,13 +518,21 @@ impl Session {
             // The motion starts at rest where the arm rests.
             self.guide.follow();
         }
+        if self.phase == Phase::Holding && self.link.is_broken() {
+            // The arm is where it drifted to: hold it there.
+            let posture = self.guide.reference().posture;
+            self.guide.brake_from(&Reference {
+                posture,
+                ..controller.place(&joints)
+            });
+        }
         let reference = self.guide.advance(wanted.as_ref(), interval_s);
 
-        // A gap longer than the core believes is a new beginning for its observer.
+        // A gap longer than the core believes in.
         let [_, longest] = INTERVAL_FACTORS;
         let gap = interval_s > longest * self.cycle_s;
-        if gap && self.state.fault().is_none() {
-            self.state.reset();
+        if gap {
+            self.state.skip();
         }
         let measurement = Measurement {
             q: joints.q,

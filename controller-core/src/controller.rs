@@ -86,6 +86,12 @@ impl<T: Real> ControllerState<T> {
         self.observer.correct(torque);
     }
 
+    /// The next cycle comes after a gap that is too long to be an interval: the
+    /// observer keeps its residual and takes the momentum anew.
+    pub fn skip(&mut self) {
+        self.observer.started = false;
+    }
+
     /// Clears a latched fault. The observer and an integrated posture start anew.
     pub fn reset(&mut self) {
         *self = Self {
@@ -161,13 +167,19 @@ impl<T: Real> Controller<T> {
     /// where it is, q_d = q. What motions start from.
     #[must_use]
     pub fn rest(&self, q: &JointVector<T>) -> Reference<T> {
-        let (q, dq) = (*q, zeros());
-        let kinematics = Kinematics::new(&self.model, &JointState { q, dq });
+        let dq = zeros();
+        self.place(&JointState { q: *q, dq })
+    }
+
+    /// The reference that moves as the arm does at this instant: position and
+    /// velocity of every level, no acceleration, q_d = q.
+    #[must_use]
+    pub fn place(&self, joints: &JointState<T>) -> Reference<T> {
+        let kinematics = Kinematics::new(&self.model, joints);
+        let tasks = self.tasks.iter().map(|task| task.place(&kinematics));
         Reference {
-            tasks: (self.tasks.iter())
-                .map(|task| task.place(&kinematics))
-                .collect(),
-            posture: q,
+            tasks: tasks.collect(),
+            posture: joints.q,
         }
     }
 

@@ -108,14 +108,24 @@ impl<T: Real> Task<T> {
 }
 
 impl<T: Real> Task<T> {
-    /// The reference that keeps the task's point, or its link's orientation, where it is.
+    /// Where the task's point or its link's orientation is and how it moves, as a
+    /// reference without acceleration.
     #[must_use]
     pub fn place(&self, kinematics: &Kinematics<T>) -> TaskReference<T> {
         match self.kind {
-            TaskKind::Position => TaskReference::rest(kinematics.point(&self.point).x),
+            TaskKind::Position => {
+                let motion = kinematics.point(&self.point);
+                TaskReference {
+                    dx: motion.dx,
+                    ..TaskReference::rest(motion.x)
+                }
+            }
             TaskKind::Orientation => {
                 let link = kinematics.link(self.point.link);
-                TaskReference::facing(orientation::of_rotation(&link.rotation))
+                TaskReference {
+                    dx: link.angular_velocity,
+                    ..TaskReference::facing(orientation::of_rotation(&link.rotation))
+                }
             }
         }
     }
