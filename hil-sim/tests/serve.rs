@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
+use bridge::session::{ANSWER_LEN, Outcome, Session};
 use fri::{Command, Flags, InterfaceState, Measurement, MeasurementPacket};
+use hil_sim::scenario::{Scenario, ScenarioSource};
 use serde_json::Value;
 
 /// A client on its own port that answers until it is dropped.
@@ -138,6 +140,53 @@ fn lockstep_gives_the_same_bytes_with_faults() {
         .and_then(|value| value.parse().ok())
         .expect("a number");
     assert_eq!(value, 0.25);
+}
+
+/// The bridge behind a socket: its answers and nothing else.
+fn bridge(socket: &UdpSocket, duration_s: f64, stop: &AtomicBool) {
+    let mut scenario = Scenario::find("two-level").expect("built in");
+    scenario.duration_s = duration_s;
+    let config = scenario.session_config(0, duration_s).expect("a session");
+    let mut source = ScenarioSource::new(&scenario);
+    let mut session = Session::new(config);
+    let (mut bytes, mut answer) = ([0; 2000], [0; ANSWER_LEN]);
+    while !stop.load(Ordering::Relaxed) {
+        let Ok((length, robot)) = socket.recv_from(&mut bytes) else {
+            continue;
+        };
+        let outcome = session.receive(&bytes[..length], &mut source, &mut answer);
+        if matches!(outcome, Outcome::Answered) {
+            socket.send_to(&answer, robot).expect("sent");
+        }
+    }
+}
+
+/// Over a socket or from hand to hand: the same motion to the last bit.
+#[test]
+fn lockstep_over_a_socket_is_the_run_in_one_process() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = Process::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args("run two-level --measurement fri --duration 5 --out run".split(' '))
+        .current_dir(folder.path())
+        .output()
+        .expect("the program runs");
+    let text = String::from_utf8_lossy(&run.stderr).to_string();
+    assert_eq!(run.status.code(), Some(0), "{text}");
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let timeout = Duration::from_millis(20);
+    socket.set_read_timeout(Some(timeout)).expect("a timeout");
+    let port = socket.local_addr().expect("an address").port();
+    let stop = AtomicBool::new(false);
+    let output = thread::scope(|scope| {
+        scope.spawn(|| bridge(&socket, 5.0, &stop));
+        let output = serve(folder.path(), port, "--lockstep --duration 5 --out udp", "");
+        stop.store(true, Ordering::Relaxed);
+        output
+    });
+    let text = String::from_utf8_lossy(&output.stderr).to_string();
+    assert_eq!(output.status.code(), Some(0), "{text}");
+    let read = |out: &str| fs::read(folder.path().join(out).join("trace.csv")).expect("a trace");
+    assert!(read("run") == read("udp"));
 }
 
 #[test]

@@ -21,6 +21,9 @@ pub fn run_report(run: &Run<'_>) -> String {
     section(&mut body, "Contacts", &tables::contacts(run));
     section(&mut body, "Figures", &drawings(run));
     section(&mut body, "Joints, observer, limits", &tables::joints(run));
+    if let Some(link) = &run.summary.link {
+        section(&mut body, "Link", &tables::link(link));
+    }
     section(&mut body, "Settings", &tables::settings(run));
     body += &footer(run);
     page(&title, &body)

@@ -6,6 +6,7 @@ use super::svg::escape;
 use super::ticks::{figure, plain};
 use super::{Run, letter};
 use crate::metrics::{LevelFigures, Metric};
+use crate::robot::LinkFigures;
 use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
 
 /// A table under construction: rows of cells that are HTML already.
@@ -262,6 +263,59 @@ pub fn joints(run: &Run<'_>) -> String {
         "Faults: torque not finite",
         &[cycles(summary.faults.non_finite_torque)],
     );
+    html += &table.finish();
+    html
+}
+
+/// How good the link was, and what happened on it.
+pub fn link(link: &LinkFigures) -> String {
+    let mut table = Table::new(
+        "Datagrams between robot and client, from the first answer on.",
+        &columns(&["Quantity", "#Value"]),
+    );
+    let count = |count: u64| format!("#{count}");
+    let (states, levels) = (&link.state_cycles, &link.quality_cycles);
+    table.row("Cycles in monitor state", &[count(states.monitor)]);
+    table.row("Cycles in command state", &[count(states.command)]);
+    let share = link.command_share.map(|share| share * 100.0);
+    table.row("Share of command state [%]", &[number(share)]);
+    table.row("Cycles of quality perfect", &[count(levels.perfect)]);
+    table.row("Cycles of quality ok", &[count(levels.ok)]);
+    table.row("Cycles of quality bad", &[count(levels.bad)]);
+    table.row(
+        "Cycles of quality unacceptable",
+        &[count(levels.unacceptable)],
+    );
+    table.row("Answers used", &[count(link.answers)]);
+    table.row("Cycles without answer in time", &[count(link.missed)]);
+    table.row("Answers after their cycle", &[count(link.late)]);
+    table.row("Answers lost", &[count(link.lost)]);
+    table.row("Answers repeated", &[count(link.repeated)]);
+    table.row("Answers overtaken", &[count(link.old)]);
+    table.row("Datagrams rejected", &[count(link.rejected.total())]);
+    table.row("Mean latency [ms]", &[number(link.latency_ms.mean)]);
+    table.row("Largest latency [ms]", &[number(link.latency_ms.max)]);
+    table.row("Jitter [ms]", &[number(link.jitter_ms)]);
+    table.row("Falls to monitor state", &[count(link.fallbacks)]);
+    table.row("Recoveries", &[count(link.recoveries)]);
+    table.row(
+        "Largest torque step that the link caused [Nm]",
+        &[number(Some(link.largest_torque_step_nm))],
+    );
+    let mut html = table.finish();
+    if link.events.is_empty() {
+        return html;
+    }
+    let mut table = Table::new(
+        "Events, by the time of the scenario and of the robot.",
+        &columns(&["Event", "#t [s]", "#Robot [s]"]),
+    );
+    for event in &link.events {
+        table.row(
+            &escape(&event.text),
+            &[number(event.t_s), number(Some(event.robot_t_s))],
+        );
+    }
     html += &table.finish();
     html
 }

@@ -104,6 +104,6 @@ pub struct LinkFigures {
     /// robot bridged a missing answer or changed its way of driving, without what
     /// the client ordered \[Nm\].
     pub largest_torque_step_nm: f64,
-    /// What happened, at most [`EVENTS_MAX`] of them.
+    /// What happened, at most 200 of them.
     pub events: Vec<Event>,
 }

@@ -271,9 +271,9 @@ impl Robot {
         }
         let behind = self.cycle - place;
         let latency_s = behind as f64 * self.cycle_s + since_cycle_start_s;
-        self.inbox
-            .accepted(place, (behind == 0).then_some(latency_s));
-        self.counters.answer(latency_s, behind == 0);
+        let in_time = behind == 0 && latency_s <= self.cycle_s;
+        self.inbox.accepted(place, in_time.then_some(latency_s));
+        self.counters.answer(latency_s, in_time);
         Answer::Accepted
     }
 

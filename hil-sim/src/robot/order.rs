@@ -21,7 +21,7 @@ pub struct Order {
     pub position: Option<JointVector<f64>>,
     /// addJntTrq \[Nm\].
     pub torque: Option<JointVector<f64>>,
-    /// jntStiffness \[Nm/rad\], within 0 to [`STIFFNESS_MAX`].
+    /// jntStiffness \[Nm/rad\], within 0 to 2000.
     pub stiffness: Option<JointVector<f64>>,
     /// jntDamping, a ratio, within 0 to 1.
     pub damping: Option<JointVector<f64>>,

@@ -55,7 +55,7 @@ pub struct Statistics {
     pub miss_rate: f64,
 }
 
-/// The answers to the last [`WINDOW`] cycles.
+/// The answers to the last 100 cycles.
 #[derive(Clone, Debug)]
 pub struct Rating {
     options: RatingOptions,

@@ -101,7 +101,7 @@ impl Link {
             }
             let next = [self.to_client.next_time_s(), self.to_robot.next_time_s()];
             let until = next.into_iter().flatten().fold(end, f64::min);
-            match client.receive(self.at(until))? {
+            match client.receive_on_time(self.at(until))? {
                 Some(answer) => self.to_robot.send(self.now_s(), t_s, answer),
                 // Behind the schedule too, what has arrived is read first.
                 None if self.now_s() >= end => return Ok(()),

@@ -18,6 +18,9 @@ const PERHAPS: Duration = Duration::from_millis(50);
 /// How long answers that should not come are waited for.
 const NOTHING: Duration = Duration::from_millis(5);
 
+/// Between looks at the socket where time counts.
+const POLL: Duration = Duration::from_micros(50);
+
 /// More than any datagram of the protocol.
 const BUFFER: usize = 2048;
 
@@ -57,6 +60,31 @@ impl Udp {
             Err(error) if !nobody(&error) => Err(error),
             _ => Ok(()),
         }
+    }
+
+    /// As [`Udp::receive`], ends at `deadline` to a tenth of a millisecond: the
+    /// system's own timeouts are whole ticks of several milliseconds. The datagram
+    /// may be noticed that much late as well.
+    ///
+    /// # Errors
+    /// Anything but silence.
+    pub fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+        self.socket.set_nonblocking(true)?;
+        let received = loop {
+            match self.socket.recv(&mut self.buffer) {
+                Ok(length) => break Ok(Some(length)),
+                Err(error) if nobody(&error) || silence(&error) => (),
+                Err(error) => break Err(error),
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                break Ok(None);
+            }
+            std::thread::sleep(left.min(POLL));
+        };
+        self.socket.set_nonblocking(false)?;
+        let buffer = &self.buffer;
+        received.map(|length| length.map(|length| &buffer[..length]))
     }
 
     /// The next datagram until `deadline`, if one comes.
