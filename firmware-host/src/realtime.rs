@@ -74,9 +74,17 @@ fn fifo() -> Grant {
     match set_thread_priority_and_policy(thread_native_id(), priority, policy) {
         Ok(()) => Grant::Given,
         Err(error) => Grant::Refused(format!(
-            "SCHED_FIFO was refused ({error:?}); allow it with `ulimit -r 99`, a line \
-             `@realtime - rtprio 99` in /etc/security/limits.conf, or CAP_SYS_NICE"
+            "SCHED_FIFO was refused ({}); allow it with `ulimit -r 99`, a line \
+             `@realtime - rtprio 99` in /etc/security/limits.conf, or CAP_SYS_NICE",
+            reason(&error)
         )),
+    }
+}
+
+fn reason(error: &thread_priority::Error) -> String {
+    match error {
+        thread_priority::Error::OS(code) => std::io::Error::from_raw_os_error(*code).to_string(),
+        other => format!("{other:?}"),
     }
 }
 
