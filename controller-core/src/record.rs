@@ -1,7 +1,7 @@
 //! One cycle as data, and a ring of the last cycles in the caller's storage:
 //! what happened before a fault.
 
-use heapless::HistoryBuf;
+use heapless::Vec;
 
 use crate::controller::Step;
 use crate::fault::Status;
@@ -27,7 +27,9 @@ pub struct CycleRecord<T: Real> {
 /// The last `N` cycles. Const-constructed, so that it can be a `static`.
 #[derive(Debug, Default)]
 pub struct Recorder<T: Real, const N: usize> {
-    cycles: HistoryBuf<CycleRecord<T>, N>,
+    cycles: Vec<CycleRecord<T>, N>,
+    /// Where the next cycle goes once all places are taken.
+    oldest: usize,
     next: u32,
 }
 
@@ -36,25 +38,33 @@ impl<T: Real, const N: usize> Recorder<T, N> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            cycles: HistoryBuf::new(),
+            cycles: Vec::new(),
+            oldest: 0,
             next: 0,
         }
     }
 
     /// Adds a cycle; the oldest one gives way. The number wraps around.
     pub fn push(&mut self, measurement: &Measurement<T>, step: &Step<T>) {
-        self.cycles.write(CycleRecord {
+        let record = CycleRecord {
             number: self.next,
             measurement: *measurement,
             torque: step.torque,
             residual: step.residual,
             status: step.status,
-        });
+        };
+        if let Err(record) = self.cycles.push(record)
+            && let Some(place) = self.cycles.get_mut(self.oldest)
+        {
+            *place = record;
+            self.oldest = (self.oldest + 1) % N;
+        }
         self.next = self.next.wrapping_add(1);
     }
 
     /// The recorded cycles, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = &CycleRecord<T>> {
-        self.cycles.oldest_ordered()
+        let (newer, older) = (self.cycles.iter(), self.cycles.iter());
+        older.skip(self.oldest).chain(newer.take(self.oldest))
     }
 }
