@@ -1,0 +1,86 @@
+//! The controller with everything a board needs around it: one call per cycle.
+
+use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::joint::{JointVector, zeros};
+use controller_core::measurement::{Measurement, Reference};
+use controller_core::real::Real;
+use controller_core::record::Recorder;
+use embedded_hal::digital::{InputPin, OutputPin};
+
+use crate::guard::{Cause, Guard};
+
+/// Cycles kept for after a stop.
+pub const RECORDED: usize = 64;
+
+/// Controller, its state, guard and recorder.
+pub struct Machine<T: Real, E, D, H> {
+    controller: Controller<T>,
+    state: ControllerState<T>,
+    recorder: Recorder<T, RECORDED>,
+    guard: Guard<E, D, H>,
+}
+
+/// What goes to the drives this cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output<T: Real> {
+    /// Torque to send \[Nm\]: the controller's while the drives run, zero otherwise.
+    pub torque: JointVector<T>,
+    /// Why the drives are off, if they are.
+    pub stopped: Option<Cause>,
+    /// The control cycle, whether its torque is sent or not.
+    pub step: Step<T>,
+}
+
+impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
+    /// Drives off, nothing observed.
+    #[must_use]
+    pub fn new(controller: Controller<T>, guard: Guard<E, D, H>) -> Self {
+        Self {
+            controller,
+            state: ControllerState::new(),
+            recorder: Recorder::new(),
+            guard,
+        }
+    }
+
+    /// Clears a fault and asks for the drives: deliberate, never by itself.
+    pub fn enable(&mut self) {
+        self.state.reset();
+        self.guard.enable();
+    }
+
+    /// One cycle: law, record, guard. Where the drives are off the observer is told
+    /// that no torque acted.
+    pub fn cycle(&mut self, measurement: &Measurement<T>, reference: &Reference<T>) -> Output<T> {
+        let step = self
+            .controller
+            .step(&mut self.state, measurement, reference);
+        self.recorder.push(measurement, &step);
+        match self.guard.cycle(step.status.fault.is_none()) {
+            Ok(()) => Output {
+                torque: step.torque,
+                stopped: None,
+                step,
+            },
+            Err(cause) => {
+                self.state.applied(&zeros());
+                Output {
+                    torque: zeros(),
+                    stopped: Some(cause),
+                    step,
+                }
+            }
+        }
+    }
+
+    /// The last cycles, oldest first.
+    #[must_use]
+    pub fn recorder(&self) -> &Recorder<T, RECORDED> {
+        &self.recorder
+    }
+
+    /// Ends with safe outputs and gives the pins back.
+    pub fn release(self) -> (E, D, H) {
+        self.guard.release()
+    }
+}

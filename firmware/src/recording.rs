@@ -1,0 +1,79 @@
+//! Closed loops on the host that make the log of the self-test: the realistic
+//! plant with its contacts, the controller in either precision.
+
+use std::io::{self, Write};
+
+use controller_core::controller::ControllerState;
+use controller_core::joint::JointState;
+use controller_core::measurement::Measurement;
+use hil_sim::plant::{Plant, PlantKind, PlantOptions};
+use hil_sim::scenario::Scenario;
+
+use crate::job::{CYCLE_S, Job, JobKind};
+use crate::log::{Entry, Header, Number};
+
+/// Seed of mismatch and noise.
+const SEED: u64 = 1;
+
+/// Writes one run of `cycles` cycles.
+///
+/// # Errors
+/// Those of the writer, and a cycle with a fault, of which there is none.
+pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) -> io::Result<()> {
+    let job = Job::<T>::new(kind).map_err(io::Error::other)?;
+    let scenario = Scenario::find(kind.name()).map_err(io::Error::other)?;
+    let mut contacts = scenario.contacts();
+    let mut plant = Plant::with_options(
+        PlantKind::Realistic,
+        scenario.arm(),
+        scenario.start(),
+        CYCLE_S,
+        SEED,
+        PlantOptions::default(),
+    );
+    let mut state = ControllerState::new();
+    let header = Header {
+        job: kind,
+        bytes: T::BYTES as u8,
+        cycles,
+    };
+    out.write_all(&header.encode())?;
+    for cycle in 0..cycles {
+        let t_s = f64::from(cycle) * CYCLE_S;
+        let truth = *plant.state();
+        let JointState { q, dq } = plant.measure();
+        let measurement = Measurement {
+            q: q.map(T::from_f64),
+            dq: dq.map(T::from_f64),
+            interval_s: T::from_f64(CYCLE_S),
+        };
+        let reference = job.reference(u32::from(cycle));
+        let step = job.controller.step(&mut state, &measurement, &reference);
+        if let Some(fault) = step.status.fault {
+            return Err(io::Error::other(std::format!("cycle {cycle}: {fault}")));
+        }
+        let entry = Entry {
+            measurement,
+            torque: step.torque,
+        };
+        let length = crate::log::NUMBERS * T::BYTES;
+        out.write_all(entry.encode().get(..length).unwrap_or_default())?;
+        contacts.take_hold(t_s, plant.model(), &truth);
+        plant.advance(t_s, &step.torque.map(T::to_f64), |t, model, state| {
+            contacts.joint_torque(t, model, state).0
+        });
+    }
+    Ok(())
+}
+
+/// Writes both jobs in both precisions.
+///
+/// # Errors
+/// As [`write_run`].
+pub fn write_log(out: &mut impl Write, cycles: u16) -> io::Result<()> {
+    for kind in JobKind::ALL {
+        write_run::<f64>(out, kind, cycles)?;
+        write_run::<f32>(out, kind, cycles)?;
+    }
+    Ok(())
+}

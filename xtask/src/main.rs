@@ -1,0 +1,48 @@
+//! What needs more than one cargo command: images for the Cortex-M7 are built, run
+//! in QEMU and judged here.
+//!
+//! Exit codes: 0 as it should be, 1 not so, 2 wrong usage or a tool is missing (the
+//! line that installs it is printed).
+
+mod arm;
+mod panic_free;
+mod selftest;
+mod tools;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "usage: cargo xtask COMMAND
+
+selftest-m7 [CYCLES]   torques of host and Cortex-M7, bit for bit; default 10000 cycles
+panic-free-m7          constructor and cycle link without a panic, and not with one
+bench-m7 [--write]     instructions, stack and memory against docs/timing.json;
+                       --write makes docs/timing.md and docs/timing.json anew
+arm-m7                 the application image; its log needs defmt-print
+missing-m7             prints what has to be installed, exit code 2 if anything";
+
+/// What came out: a verdict, or why there is none.
+type Outcome = Result<bool, tools::Trouble>;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let outcome: Outcome = match words[..] {
+        ["selftest-m7"] => selftest::run("10000"),
+        ["selftest-m7", cycles] => selftest::run(cycles),
+        ["panic-free-m7"] => panic_free::run(),
+        ["arm-m7"] => arm::run(),
+        ["missing-m7"] => tools::Tools::find().map(|_| true),
+        _ => {
+            eprintln!("{USAGE}");
+            return 2.into();
+        }
+    };
+    match outcome {
+        Ok(true) => 0.into(),
+        Ok(false) => 1.into(),
+        Err(trouble) => {
+            eprintln!("{trouble}");
+            trouble.exit_code().into()
+        }
+    }
+}
