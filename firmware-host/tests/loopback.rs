@@ -9,7 +9,7 @@ use bridge::session::Session;
 use firmware_host::realtime::Realtime;
 use firmware_host::run::{Link, converse};
 use firmware_host::summary::Summary;
-use hil_sim::loopback;
+use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
 use hil_sim::scenario::{Scenario, ScenarioSource};
@@ -39,7 +39,11 @@ fn in_process(scenario: &Scenario, seed: u64) -> Vec<u8> {
     let config = scenario.session_config(0, scenario.duration_s);
     let mut robot = robot(scenario, seed);
     let config = config.expect("a good scenario");
-    loopback::run(&mut robot, config, |instant| trace.push(instant), |_| {}).expect("memory");
+    let mut client = BridgeClient::new(config, scenario);
+    loopback::run(&mut robot, &mut client, &[], |instant, _| {
+        trace.push(instant)
+    })
+    .expect("memory");
     trace.finish()
 }
 
