@@ -13,7 +13,7 @@ use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
 use hil_sim::scenario::{Scenario, ScenarioSource};
-use hil_sim::serve::{End, Operator, Service};
+use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 
 fn scenario(duration_s: f64) -> Scenario {
@@ -54,14 +54,16 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
     let served = scenario.clone();
     let server = thread::spawn(move || {
         let service = Service {
-            remote: here,
-            local_port: 0,
+            client: Client::Udp {
+                remote: here,
+                local_port: 0,
+            },
             lockstep,
             faults: Vec::new(),
             wait_s: 20.0,
         };
         let mut robot = robot(&served, seed);
-        let mut client = service.open().expect("loopback");
+        let mut client = Udp::open(here, 0).expect("loopback");
         let mut trace = Trace::new(Vec::new(), &served).expect("memory");
         let end = service.run(
             &mut robot,
