@@ -90,43 +90,49 @@ impl Audit {
         let dynamics = Dynamics::new(model, &kinematics, &state);
         self.samples = self.samples.saturating_add(1);
 
-        let difference = robot.gravity - dynamics.gravity;
-        for (joint, value) in (1..=DOF).zip(&difference) {
-            if value.magnitude() > self.gravity_nm {
-                self.gravity_nm = value.magnitude();
-                self.gravity_joint = joint;
-            }
-        }
         let gravity = judge(
             robot.gravity.as_slice(),
             dynamics.gravity.as_slice(),
             GRAVITY_TOLERANCE_NM,
         );
         self.gravity = worse(self.gravity, gravity);
+        let difference = robot.gravity - dynamics.gravity;
+        for (joint, value) in (1..=DOF).zip(&difference) {
+            if gravity != Agreement::NotSent && value.magnitude() > self.gravity_nm {
+                self.gravity_nm = value.magnitude();
+                self.gravity_joint = joint;
+            }
+        }
 
         let scale = dynamics.mass_matrix.amax();
-        let share = (robot.mass_matrix - dynamics.mass_matrix).amax() / scale;
-        self.mass_share = self.mass_share.larger(share);
         let mass = judge(
             robot.mass_matrix.as_slice(),
             dynamics.mass_matrix.as_slice(),
             MASS_TOLERANCE * scale,
         );
         self.mass = worse(self.mass, mass);
+        if mass != Agreement::NotSent {
+            let share = (robot.mass_matrix - dynamics.mass_matrix).amax() / scale;
+            self.mass_share = self.mass_share.larger(share);
+        }
 
         let motion = kinematics.point(flange);
         let linear = kinematics.point_jacobian(flange.link, &motion).jacobian;
         let angular = kinematics.angular_jacobian(flange.link).jacobian;
         let rows = linear.iter().chain(&angular);
-        let mut jacobian = Agreement::NotSent;
-        for (row, ours) in robot.jacobian.iter().zip(rows) {
-            self.jacobian_error = self.jacobian_error.larger((row - ours).amax());
-            let row = judge(row.as_slice(), ours.as_slice(), JACOBIAN_TOLERANCE);
-            jacobian = match (jacobian, row) {
-                // A row of zeros is a row like any other once another one is sent.
-                (Agreement::NotSent, row) => row,
-                (all, Agreement::NotSent) => all,
-                (all, row) => worse(all, row),
+        let sent = robot.jacobian.iter().any(|row| row.amax() > 0.0);
+        let mut jacobian = if sent {
+            Agreement::Agrees
+        } else {
+            Agreement::NotSent
+        };
+        for (row, ours) in robot.jacobian.iter().zip(rows).filter(|_| sent) {
+            let error = (row - ours).amax();
+            self.jacobian_error = self.jacobian_error.larger(error);
+            // One row of zeros is a row like any other.
+            jacobian = match judge(row.as_slice(), ours.as_slice(), JACOBIAN_TOLERANCE) {
+                Agreement::NotSent => worse(jacobian, Agreement::Differs),
+                agreement => worse(jacobian, agreement),
             };
         }
         self.jacobian = worse(self.jacobian, jacobian);
@@ -165,5 +171,78 @@ fn judge(theirs: &[f64], ours: &[f64], tolerance: f64) -> Agreement {
         Agreement::OppositeSign
     } else {
         Agreement::Differs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::joint::Vector3;
+    use controller_core::model::LWR_IV;
+
+    /// The controller's own model as a robot would send it, and an audit of it
+    /// after `change`.
+    fn audit(change: impl FnOnce(&mut RobotModel)) -> Audit {
+        let model = ArmModel::new(&LWR_IV).expect("the built-in arm");
+        let offset = Vector3::from([0.0, 0.0, LWR_IV.flange]);
+        let flange = LinkPoint { link: 7, offset };
+        let q = JointVector::from([0.1, 0.6, -0.3, -1.3, 0.4, 0.9, 0.2]);
+        let kinematics = Kinematics::new(&model, &JointState { q, dq: zeros() });
+        let dynamics = Dynamics::new(&model, &kinematics, &JointState { q, dq: zeros() });
+        let motion = kinematics.point(&flange);
+        let [x, y, z] = kinematics.point_jacobian(7, &motion).jacobian;
+        let [rx, ry, rz] = kinematics.angular_jacobian(7).jacobian;
+        let mut robot = RobotModel {
+            q,
+            mass_matrix: dynamics.mass_matrix,
+            gravity: dynamics.gravity,
+            jacobian: [x, y, z, rx, ry, rz],
+        };
+        change(&mut robot);
+        let mut audit = Audit::default();
+        audit.compare(&model, &flange, &robot);
+        audit
+    }
+
+    #[test]
+    fn the_same_model_agrees() {
+        let audit = audit(|_| ());
+        assert!(audit.passes());
+        let all = [audit.gravity, audit.mass, audit.jacobian];
+        assert_eq!(all, [Agreement::Agrees; 3]);
+        assert_eq!((audit.gravity_nm, audit.jacobian_error), (0.0, 0.0));
+    }
+
+    #[test]
+    fn what_is_not_sent_is_not_held_against_the_robot() {
+        let audit = audit(|robot| {
+            robot.gravity = zeros();
+            robot.mass_matrix = JointMatrix::zeros();
+            robot.jacobian = [zeros(); 6];
+        });
+        assert!(audit.passes());
+        let all = [audit.gravity, audit.mass, audit.jacobian];
+        assert_eq!(all, [Agreement::NotSent; 3]);
+        assert_eq!((audit.gravity_nm, audit.mass_share), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_wrong_sign_a_tool_and_a_wrong_order_are_found() {
+        let sign = audit(|robot| robot.gravity = -robot.gravity);
+        assert_eq!(sign.gravity, Agreement::OppositeSign);
+        let tool = audit(|robot| robot.gravity[1] -= 5.0);
+        assert_eq!((tool.gravity, tool.gravity_joint), (Agreement::Differs, 2));
+        assert!((tool.gravity_nm - 5.0).abs() < 1e-12);
+        // Joints in the order of the robot's program: the third axis last.
+        let order = audit(|robot| {
+            for row in &mut robot.jacobian {
+                let third = row[2];
+                *row = row.remove_row(2).insert_row(6, third);
+            }
+        });
+        assert_eq!(order.jacobian, Agreement::Differs);
+        let heavy = audit(|robot| robot.mass_matrix *= 1.5);
+        assert_eq!(heavy.mass, Agreement::Differs);
+        assert!(![sign, tool, order, heavy].iter().any(Audit::passes));
     }
 }

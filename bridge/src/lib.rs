@@ -9,6 +9,7 @@
 //!   transitions that do not jump;
 //! - `wire`: what the session reads of a measurement and writes into an answer;
 //! - `link`: counters, and whether the link carries a motion;
+//! - [`framing`]: datagrams on a serial line;
 //! - `sent`: which of the torques sent acted on the arm;
 //! - [`audit`]: the robot's model against the controller's;
 //! - [`session`]: the states of the conversation, and the cycle.
@@ -24,6 +25,7 @@
 extern crate std;
 
 pub mod audit;
+pub mod framing;
 pub mod guide;
 mod link;
 mod sent;

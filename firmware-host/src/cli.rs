@@ -178,6 +178,8 @@ impl RunOptions {
     fn run(&self) -> Result<u8, Invalid> {
         let scenario = Scenario::find(&self.scenario)?;
         let config = self.config(&scenario)?;
+        let required = self.required_start(&scenario)?;
+        let wait = Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?);
         let mut source = self.source(&scenario)?;
         for path in self
             .summary
@@ -207,13 +209,12 @@ impl RunOptions {
         let mut link = Link {
             socket,
             peer: self.peer,
-            wait: Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?),
+            wait,
             silence: Duration::from_secs(2),
             stop: &stop,
         };
         let mut flight = Flight::new();
         let mut teller = Teller::new();
-        let required = self.required_start(&scenario)?;
         let mut refused = None;
         let counts = converse(
             &mut link,

@@ -9,11 +9,11 @@ use bridge::session::Session;
 use firmware_host::realtime::Realtime;
 use firmware_host::run::{Link, converse};
 use firmware_host::summary::Summary;
-use hil_sim::loopback;
+use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
 use hil_sim::scenario::{Scenario, ScenarioSource};
-use hil_sim::serve::{End, Operator, Service};
+use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 
 fn scenario(duration_s: f64) -> Scenario {
@@ -39,7 +39,11 @@ fn in_process(scenario: &Scenario, seed: u64) -> Vec<u8> {
     let config = scenario.session_config(0, scenario.duration_s);
     let mut robot = robot(scenario, seed);
     let config = config.expect("a good scenario");
-    loopback::run(&mut robot, config, |instant| trace.push(instant), |_| {}).expect("memory");
+    let mut client = BridgeClient::new(config, scenario);
+    loopback::run(&mut robot, &mut client, &[], |instant, _| {
+        trace.push(instant)
+    })
+    .expect("memory");
     trace.finish()
 }
 
@@ -50,14 +54,16 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
     let served = scenario.clone();
     let server = thread::spawn(move || {
         let service = Service {
-            remote: here,
-            local_port: 0,
+            client: Client::Udp {
+                remote: here,
+                local_port: 0,
+            },
             lockstep,
             faults: Vec::new(),
             wait_s: 20.0,
         };
         let mut robot = robot(&served, seed);
-        let mut client = service.open().expect("loopback");
+        let mut client = Udp::open(here, 0).expect("loopback");
         let mut trace = Trace::new(Vec::new(), &served).expect("memory");
         let end = service.run(
             &mut robot,

@@ -15,7 +15,7 @@ use controller_core::model::ArmModel;
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, Decision, LawGains};
 use crate::invalid::Invalid;
-use crate::loopback;
+use crate::loopback::{self, BridgeClient};
 use crate::metrics::{FaultCounts, Metrics};
 use crate::names::{MeasurementKind, Named, NullStiffness};
 use crate::plant::{Plant, PlantKind, PlantModel, PlantOptions};
@@ -132,8 +132,8 @@ impl Experiment {
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
-        sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
-        progress: impl FnMut(f64),
+        mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+        mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         let config = self.session().map_err(io::Error::other)?;
         let mut robot = Robot::new(RobotSetup {
@@ -144,7 +144,11 @@ impl Experiment {
             plant_options: self.options,
             options: RobotOptions::default(),
         });
-        loopback::run(&mut robot, config, sink, progress)?;
+        let mut client = BridgeClient::new(config, &self.scenario);
+        loopback::run(&mut robot, &mut client, &[], |instant, _| {
+            progress(instant.t_s / self.scenario.duration_s);
+            sink(instant)
+        })?;
         Ok(Summary {
             controller: self.controller.name(),
             ..robot.summary()

@@ -8,37 +8,64 @@ use std::io;
 use bridge::session::{ANSWER_LEN, Outcome, Session, SessionConfig};
 
 use crate::experiment::Instant;
-use crate::robot::{MEASUREMENT_BYTES, Robot};
-use crate::scenario::ScenarioSource;
+use crate::link::{Expect, Fault, LockStep, Peer};
+use crate::robot::Robot;
+use crate::scenario::{Scenario, ScenarioSource};
 
-/// Lets both talk until the scenario is over. Every cycle from time 0 on is shown
-/// to `sink`; `progress` is told the share done, 0 to 1.
+/// The bridge as a client in this process.
+#[derive(Debug)]
+pub struct BridgeClient {
+    /// The conversation.
+    pub session: Session,
+    source: ScenarioSource,
+}
+
+impl BridgeClient {
+    /// A client that follows the motion of `scenario`.
+    #[must_use]
+    pub fn new(config: SessionConfig, scenario: &Scenario) -> Self {
+        Self {
+            session: Session::new(config),
+            source: ScenarioSource::new(scenario),
+        }
+    }
+}
+
+impl Peer for BridgeClient {
+    fn exchange(
+        &mut self,
+        measurement: &[u8],
+        _: Expect,
+        answers: &mut Vec<Vec<u8>>,
+    ) -> io::Result<bool> {
+        let mut answer = [0; ANSWER_LEN];
+        let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
+        let answered = outcome == Outcome::Answered;
+        if answered {
+            answers.push(answer.to_vec());
+        }
+        Ok(answered)
+    }
+}
+
+/// Lets both talk over a link with `faults` until the scenario is over. Every cycle
+/// from time 0 on is shown to `sink`.
 ///
 /// # Errors
 /// Those of `sink`.
 pub fn run(
     robot: &mut Robot,
-    config: SessionConfig,
-    mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
-    mut progress: impl FnMut(f64),
+    client: &mut BridgeClient,
+    faults: &[Fault],
+    mut sink: impl FnMut(&Instant<'_>, &Session) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut source = ScenarioSource::new(&robot.setup().scenario);
-    let duration_s = config.duration_s;
-    let mut session = Session::new(config);
-    let (mut measurement, mut answer) = ([0; MEASUREMENT_BYTES], [0; ANSWER_LEN]);
+    let cycle_s = robot.setup().scenario.cycle_s();
+    let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);
     while !robot.is_finished() {
-        robot.measurement(&mut measurement);
-        match session.receive(&measurement, &mut source, &mut answer) {
-            Outcome::Answered => {
-                robot.command(&answer, 0.0);
-            }
-            // Two sides of one program cannot misunderstand each other.
-            other => unreachable!("{other:?}"),
-        }
+        link.cycle(robot, client)?;
         if let Some(instant) = robot.advance() {
-            sink(&instant)?;
-            progress(instant.t_s / duration_s);
+            sink(&instant, &client.session)?;
         }
     }
-    Ok(())
+    link.finish(robot, client)
 }

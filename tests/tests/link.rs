@@ -1,40 +1,14 @@
 //! The bridge and the simulated robot over a link that loses, delays and
 //! freezes, in virtual time: the figures that a user may count on.
 
-use std::io;
-
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
-use hil_sim::link::{Expect, Fault, LockStep, Peer};
+use bridge::session::Phase;
+use hil_sim::link::Fault;
+use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::{PlantKind, PlantOptions};
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{Scenario, ScenarioSource};
+use hil_sim::scenario::Scenario;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
-
-/// The bridge as a client.
-struct Client {
-    session: Session,
-    source: ScenarioSource,
-    phases: Vec<Phase>,
-}
-
-impl Peer for Client {
-    fn exchange(
-        &mut self,
-        measurement: &[u8],
-        _: Expect,
-        answers: &mut Vec<Vec<u8>>,
-    ) -> io::Result<bool> {
-        let mut answer = [0; ANSWER_LEN];
-        let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
-        let answered = outcome == Outcome::Answered;
-        if answered {
-            answers.push(answer.to_vec());
-        }
-        self.phases.push(self.session.phase());
-        Ok(answered)
-    }
-}
 
 /// What a run was.
 struct Run {
@@ -71,12 +45,8 @@ impl Default for Wish<'_> {
 fn run(wish: &Wish<'_>) -> Run {
     let scenario = Scenario::find("two-level").expect("built in");
     let config = scenario.session_config(wish.dead_cycles as u8, scenario.duration_s);
-    let mut client = Client {
-        session: Session::new(config.expect("a good scenario")),
-        source: ScenarioSource::new(&scenario),
-        phases: Vec::new(),
-    };
-    let cycle_s = scenario.cycle_s();
+    let config = config.expect("a good scenario");
+    let mut client = BridgeClient::new(config, &scenario);
     let mut robot = Robot::new(RobotSetup {
         scenario,
         plant: wish.plant,
@@ -91,22 +61,21 @@ fn run(wish: &Wish<'_>) -> Run {
     let faults: Vec<Fault> = (wish.faults.iter())
         .map(|spec| spec.parse().expect("a good fault"))
         .collect();
-    let mut link = LockStep::new(&faults, cycle_s, wish.seed);
-    let mut cycles = Vec::new();
-    while !robot.is_finished() {
-        link.cycle(&mut robot, &mut client).expect("no transport");
-        if let Some(instant) = robot.advance() {
-            let error_mm = instant.levels[0].error * 1e3;
-            cycles.push((instant.t_s, error_mm, (*instant.torque).into()));
-        }
-    }
-    link.finish(&mut robot, &mut client).expect("no transport");
+    let (mut cycles, mut phases) = (Vec::new(), Vec::new());
+    loopback::run(&mut robot, &mut client, &faults, |instant, session| {
+        let error_mm = instant.levels[0].error * 1e3;
+        cycles.push((instant.t_s, error_mm, (*instant.torque).into()));
+        phases.push(session.phase());
+        Ok(())
+    })
+    .expect("memory");
+    phases.push(client.session.phase());
     let summary = robot.summary();
     let limits = summary.limits.torque + summary.limits.position;
     Run {
         cycles,
         link: summary.link.expect("the robot's side"),
-        phases: client.phases,
+        phases,
         limits,
         stopped: summary.verdict == hil_sim::summary::Verdict::Stopped,
     }

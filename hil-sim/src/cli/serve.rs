@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::files::Files;
 use super::run::{dead_cycles, footer, heading, number, seed, switch, table};
+use crate::experiment::Instant;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::link::Fault;
 use crate::names::{Named, NullStiffness};
@@ -15,7 +16,7 @@ use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
 };
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
-use crate::serve::{End, Operator, Service};
+use crate::serve::{Client, End, Operator, Serial, Service, Udp};
 
 /// Exit code when no client came, or none that could be let into command state.
 const NO_CLIENT: u8 = 4;
@@ -47,7 +48,10 @@ pub struct ServeOptions {
     /// Short for --remote 127.0.0.1:PORT
     #[arg(long)]
     port: Option<String>,
-    /// Own port [default: any]
+    /// A serial line instead: device or pseudo terminal
+    #[arg(long, value_name = "PATH")]
+    serial: Option<PathBuf>,
+    /// Own port; 0: any
     #[arg(long, default_value = "0")]
     local_port: String,
     /// Cycle in ms, 1 to 20 [default: the scenario's]
@@ -181,19 +185,26 @@ impl ServeOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
-        let failed = |error| Invalid::line(error).within(service.remote);
-        let mut client = service.open().map_err(failed)?;
+        let failed = |error| Invalid::line(error).within(&service.client);
         let mut files = Files::create(&out, &scenario, setup.contacts)?;
         eprintln!(
             "robot at the start posture, measurements go to {}; lines on standard input: push, \
              release, drives off|on, quit",
-            service.remote
+            service.client
         );
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
-        let end = service.run(&mut robot, &mut operator, &mut client, |instant| {
-            files.push(&scenario, instant)
-        });
+        let mut sink = |instant: &Instant<'_>| files.push(&scenario, instant);
+        let end = match &service.client {
+            Client::Udp { remote, local_port } => {
+                let mut client = Udp::open(*remote, *local_port).map_err(failed)?;
+                service.run(&mut robot, &mut operator, &mut client, &mut sink)
+            }
+            Client::Serial(path) => {
+                let mut client = Serial::open(path).map_err(failed)?;
+                service.run(&mut robot, &mut operator, &mut client, &mut sink)
+            }
+        };
         match end.map_err(failed)? {
             End::Finished => (),
             End::NoClient(why) => {
@@ -220,19 +231,33 @@ impl ServeOptions {
             let port = text.parse().ok().filter(|port| *port >= least);
             port.ok_or_else(|| Invalid::new(name, text, format_args!("{least} to 65535")))
         };
+        let given = [
+            self.remote.is_some(),
+            self.port.is_some(),
+            self.serial.is_some(),
+        ];
+        if given.iter().filter(|given| **given).count() > 1 {
+            let allowed = "one of them";
+            return Err(Invalid::new(
+                "--remote, --port, --serial",
+                "several given",
+                allowed,
+            ));
+        }
         let remote = match (&self.remote, &self.port) {
-            (Some(_), Some(_)) => {
-                let allowed = "one of the two";
-                return Err(Invalid::new("--remote and --port", "both given", allowed));
-            }
-            (Some(remote), None) => address(remote)?,
+            (Some(remote), _) => address(remote)?,
             (None, Some(text)) => SocketAddr::from(([127, 0, 0, 1], port("--port", text, 1)?)),
             (None, None) => SocketAddr::from(([127, 0, 0, 1], PORT)),
         };
         let faults = self.fault.iter().map(|spec| spec.parse::<Fault>());
         Ok(Service {
-            remote,
-            local_port: port("--local-port", &self.local_port, 0)?,
+            client: match &self.serial {
+                Some(path) => Client::Serial(path.clone()),
+                None => Client::Udp {
+                    remote,
+                    local_port: port("--local-port", &self.local_port, 0)?,
+                },
+            },
             lockstep: self.lockstep,
             faults: faults.collect::<Result<_, _>>()?,
             wait_s: positive("--wait", self.wait, 1e6)?,

@@ -1,15 +1,21 @@
-//! The robot on a socket: it sends first, to the one address it was told, and
-//! takes answers from there only.
+//! The robot on a socket or a serial line: it sends first, to the one client that
+//! it was told, and takes answers from there only.
 
 mod console;
 mod paced;
+mod serial;
+mod transport;
 mod udp;
 
+use std::fmt;
 use std::io;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::time::{Duration, Instant as Clock};
 
 pub use console::{Operator, Wish};
+pub use serial::Serial;
+pub use transport::Transport;
 pub use udp::Udp;
 
 use crate::experiment::Instant;
@@ -20,9 +26,7 @@ use crate::robot::Robot;
 #[derive(Clone, Debug)]
 pub struct Service {
     /// Where the client is.
-    pub remote: SocketAddr,
-    /// Own port; 0: any.
-    pub local_port: u16,
+    pub client: Client,
     /// Virtual time instead of the wall clock.
     pub lockstep: bool,
     /// What happens to datagrams.
@@ -30,6 +34,29 @@ pub struct Service {
     /// How long to wait for the first answer, and from there for command state
     /// \[s\].
     pub wait_s: f64,
+}
+
+/// Where the client is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Client {
+    /// At an address, reached from an own port; 0: any.
+    Udp {
+        /// The client's address.
+        remote: SocketAddr,
+        /// Own port; 0: any.
+        local_port: u16,
+    },
+    /// At the other end of a serial line: a device or a pseudo terminal.
+    Serial(PathBuf),
+}
+
+impl fmt::Display for Client {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Udp { remote, .. } => write!(f, "{remote}"),
+            Self::Serial(path) => write!(f, "{}", path.display()),
+        }
+    }
 }
 
 /// How a service ended.
@@ -42,14 +69,6 @@ pub enum End {
 }
 
 impl Service {
-    /// The socket for this service.
-    ///
-    /// # Errors
-    /// The port is taken, or the address cannot be reached.
-    pub fn open(&self) -> io::Result<Udp> {
-        Udp::open(self.remote, self.local_port)
-    }
-
     /// Serves `robot` to `client` until its scenario is over. Every cycle of scenario
     /// time goes to `sink`.
     ///
@@ -59,7 +78,7 @@ impl Service {
         &self,
         robot: &mut Robot,
         operator: &mut Operator,
-        client: &mut Udp,
+        client: &mut impl Transport,
         sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
     ) -> io::Result<End> {
         if self.lockstep {
@@ -73,7 +92,7 @@ impl Service {
         &self,
         robot: &mut Robot,
         operator: &mut Operator,
-        client: &mut Udp,
+        client: &mut impl Transport,
         mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
     ) -> io::Result<End> {
         let cycle_s = robot.setup().scenario.cycle_s();
@@ -98,7 +117,7 @@ impl Service {
     fn hopeless(&self, robot: &Robot, begun: Clock) -> Option<End> {
         if !robot.has_begun() {
             let over = begun.elapsed() > Duration::from_secs_f64(self.wait_s);
-            let text = || format!("no answer from {} within {} s", self.remote, self.wait_s);
+            let text = || format!("no answer from {} within {} s", self.client, self.wait_s);
             return over.then(|| End::NoClient(text()));
         }
         let over = robot.has_never_commanded() && robot.robot_time_s() > self.wait_s;
@@ -108,7 +127,7 @@ impl Service {
             let why = last.unwrap_or_else(|| format!("link quality {quality}"));
             End::NoClient(format!(
                 "no command state with {} within {} s: {why}",
-                self.remote, self.wait_s
+                self.client, self.wait_s
             ))
         })
     }

@@ -4,8 +4,8 @@
 use std::io;
 use std::time::{Duration, Instant as Clock};
 
-use super::udp::RESEND;
-use super::{End, Operator, Service, Udp};
+use super::transport::{RESEND, Transport};
+use super::{End, Operator, Service};
 use crate::experiment::Instant;
 use crate::link::{Channel, Direction};
 use crate::robot::{MEASUREMENT_BYTES, Robot};
@@ -15,7 +15,7 @@ pub(super) fn run(
     service: &Service,
     robot: &mut Robot,
     operator: &mut Operator,
-    client: &mut Udp,
+    client: &mut impl Transport,
     mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
@@ -84,7 +84,7 @@ impl Link {
     }
 
     /// Sends the measurement and takes answers until the cycle is over.
-    fn cycle(&mut self, robot: &mut Robot, client: &mut Udp) -> io::Result<()> {
+    fn cycle(&mut self, robot: &mut Robot, client: &mut impl Transport) -> io::Result<()> {
         let start = (robot.cycle() - self.first) as f64 * self.cycle_s;
         let end = start + self.cycle_s;
         let t_s = robot.time_s();

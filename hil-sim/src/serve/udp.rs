@@ -4,22 +4,7 @@ use std::io::{self, ErrorKind};
 use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-use crate::link::{Expect, Peer};
-
-/// How long a client may take to answer in lock-step before it counts as gone.
-pub const PATIENCE: Duration = Duration::from_secs(2);
-
-/// Between first measurements while nobody answers.
-pub const RESEND: Duration = Duration::from_millis(50);
-
-/// How long answers to damaged measurements are waited for.
-const PERHAPS: Duration = Duration::from_millis(50);
-
-/// How long answers that should not come are waited for.
-const NOTHING: Duration = Duration::from_millis(5);
-
-/// Between looks at the socket where time counts.
-const POLL: Duration = Duration::from_micros(50);
+use super::transport::{NOTHING, POLL, Transport};
 
 /// More than any datagram of the protocol.
 const BUFFER: usize = 2048;
@@ -50,25 +35,17 @@ impl Udp {
             buffer: [0; BUFFER],
         })
     }
+}
 
-    /// Sends; that nobody is there is no error.
-    ///
-    /// # Errors
-    /// Anything else.
-    pub fn send(&self, datagram: &[u8]) -> io::Result<()> {
+impl Transport for Udp {
+    fn send(&mut self, datagram: &[u8]) -> io::Result<()> {
         match self.socket.send(datagram) {
             Err(error) if !nobody(&error) => Err(error),
             _ => Ok(()),
         }
     }
 
-    /// As [`Udp::receive`], ends at `deadline` to a tenth of a millisecond: the
-    /// system's own timeouts are whole ticks of several milliseconds. The datagram
-    /// may be noticed that much late as well.
-    ///
-    /// # Errors
-    /// Anything but silence.
-    pub fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
         self.socket.set_nonblocking(true)?;
         let received = loop {
             match self.socket.recv(&mut self.buffer) {
@@ -87,11 +64,7 @@ impl Udp {
         received.map(|length| length.map(|length| &buffer[..length]))
     }
 
-    /// The next datagram until `deadline`, if one comes.
-    ///
-    /// # Errors
-    /// Anything but silence.
-    pub fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+    fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             // A timeout of zero would mean none.
@@ -120,31 +93,4 @@ fn silence(error: &io::Error) -> bool {
         error.kind(),
         ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
     )
-}
-
-impl Peer for Udp {
-    fn exchange(
-        &mut self,
-        measurement: &[u8],
-        expect: Expect,
-        answers: &mut Vec<Vec<u8>>,
-    ) -> io::Result<bool> {
-        self.send(measurement)?;
-        let patience = match expect {
-            Expect::Answer => PATIENCE,
-            Expect::First => RESEND,
-            Expect::Perhaps => PERHAPS,
-            Expect::Nothing => NOTHING,
-            Expect::Farewell => return Ok(true),
-        };
-        let deadline = Instant::now() + patience;
-        let counter = measurement.get(..2);
-        while let Some(answer) = self.receive(deadline)? {
-            answers.push(answer.to_vec());
-            if expect != Expect::Nothing && answer.get(2..4) == counter {
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
 }

@@ -124,7 +124,7 @@ fn the_position_scheme_follows_a_ramp() {
     }
 }
 
-/// eq (6): with torque zero the arm hangs where its gravity is compensated.
+/// the equation of motion: with torque zero the arm hangs where its gravity is compensated.
 #[test]
 fn torque_zero_floats_on_the_ideal_arm() {
     let mut link = Loop::new(robot(Ideal));
