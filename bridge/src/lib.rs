@@ -10,6 +10,7 @@
 //! - `wire`: what the session reads of a measurement and writes into an answer;
 //! - `link`: counters, and whether the link carries a motion;
 //! - [`framing`]: datagrams on a serial line;
+//! - [`transport`]: the link under a session, and its form on a serial line;
 //! - `sent`: which of the torques sent acted on the arm;
 //! - [`audit`]: the robot's model against the controller's;
 //! - [`session`]: the states of the conversation, and the cycle.
@@ -30,4 +31,5 @@ pub mod guide;
 mod link;
 mod sent;
 pub mod session;
+pub mod transport;
 mod wire;

@@ -48,6 +48,8 @@ pub struct Session {
     link: Link,
     phase: Phase,
     stop: Option<StopReason>,
+    /// Whether it stops without braking first.
+    halted: bool,
     audit: Audit,
     /// Cycles since the first datagram, lost ones included.
     cycle: u64,
@@ -80,6 +82,7 @@ impl Session {
             link: Link::new(),
             phase: Phase::Waiting,
             stop: None,
+            halted: false,
             audit: Audit::default(),
             cycle: 0,
             first_command: None,
@@ -143,6 +146,13 @@ impl Session {
     /// Brings the arm to rest and ends the session.
     pub fn stop(&mut self) {
         self.stop_for(StopReason::Asked);
+    }
+
+    /// Ends the session without waiting for the arm to come to rest: the robot's own
+    /// stiffness takes over at once. For an emergency stop.
+    pub fn halt(&mut self) {
+        self.stop_for(StopReason::Asked);
+        self.halted = true;
     }
 
     /// For a robot that was silent so long that it may have been restarted: any
@@ -416,7 +426,7 @@ impl Session {
             Phase::Finished => return 1.0,
             _ => return 0.0,
         }
-        let brake_s = if self.state.fault().is_some() {
+        let brake_s = if self.halted || self.state.fault().is_some() {
             0.0
         } else {
             self.config.guide.brake_s

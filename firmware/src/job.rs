@@ -140,8 +140,13 @@ impl<T: Real> Job<T> {
     /// The reference of cycle `number`: circle at the first level, rest below it.
     #[must_use]
     pub fn reference(&self, number: u32) -> Reference<T> {
-        let t_s = T::from_f64(f64::from(number) * CYCLE_S);
-        let mut reference = self.origin.clone();
+        self.moved(&self.origin, T::from_f64(f64::from(number) * CYCLE_S))
+    }
+
+    /// The reference at `t_s` \[s\] of the motion that begins at `origin`.
+    #[must_use]
+    pub fn moved(&self, origin: &Reference<T>, t_s: T) -> Reference<T> {
+        let mut reference = origin.clone();
         if let Some(flange) = reference.tasks.first_mut() {
             *flange = self.circle.sample(&flange.x, t_s);
         }

@@ -9,6 +9,8 @@
 //!   and of its parts. For the timing table.
 //! - `mps2`: QEMU's board mps2-an500, bare metal only; `recording`: closed loops
 //!   that make the log, host only.
+//! - [`remote`]: the FRI session of the `bridge` with a guard, on any datagram
+//!   link. For a co-processor without a PC.
 //!
 //! Each image is also a host program with the same name: `selftest` writes the
 //! log, `bench` prints what the target must compute, `arm` shows a run.
@@ -26,3 +28,4 @@ pub mod machine;
 pub mod mps2;
 #[cfg(not(target_os = "none"))]
 pub mod recording;
+pub mod remote;

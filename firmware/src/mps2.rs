@@ -3,13 +3,18 @@
 
 #![allow(unsafe_code)] // registers, semihosting calls and the painted stack
 
+mod ethernet;
 mod fpga;
 mod host_file;
+mod lan9118;
 mod stack;
+mod uart;
 
+pub use ethernet::{Ethernet, Memory, PORT, Trouble};
 pub use fpga::{Button, Counter, Led, instructions};
-pub use host_file::HostFile;
+pub use host_file::{HostFile, HostSwitch};
 pub use stack::high_water;
+pub use uart::Uart;
 
 /// Says what went wrong and ends the program with exit code 1.
 pub fn panicked(info: &core::panic::PanicInfo<'_>) -> ! {

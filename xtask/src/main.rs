@@ -5,6 +5,7 @@
 //! line that installs it is printed).
 
 mod arm;
+mod fri;
 mod panic_free;
 mod selftest;
 mod tools;
@@ -18,6 +19,8 @@ panic-free-m7          constructor and cycle link without a panic, and not with 
 bench-m7 [--write]     instructions, stack and memory against docs/timing.json;
                        --write makes docs/timing.md and docs/timing.json anew
 arm-m7                 the application image; its log needs defmt-print
+fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a serial
+                       port: run hil-sim serve beside it
 missing-m7             prints what has to be installed, exit code 2 if anything";
 
 /// What came out: a verdict, or why there is none.
@@ -31,6 +34,8 @@ fn main() -> ExitCode {
         ["selftest-m7", cycles] => selftest::run(cycles),
         ["panic-free-m7"] => panic_free::run(),
         ["arm-m7"] => arm::run(),
+        ["fri-m7"] => fri::run(fri::Link::Ethernet),
+        ["fri-m7", "--serial"] => fri::run(fri::Link::Serial),
         ["missing-m7"] => tools::Tools::find().map(|_| true),
         _ => {
             eprintln!("{USAGE}");

@@ -9,7 +9,8 @@ use std::process::{Command, Output, Stdio};
 /// Of the Cortex-M7.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-const QEMU: &str = "qemu-system-arm";
+/// The emulator.
+pub const QEMU: &str = "qemu-system-arm";
 
 /// Why there is no verdict.
 #[derive(Debug)]

@@ -1,6 +1,9 @@
 //! A file on the host, read through semihosting.
 
+use core::convert::Infallible;
+
 use cortex_m_semihosting::syscall;
+use embedded_hal::digital::{ErrorType, InputPin};
 
 /// An open file.
 #[derive(Debug)]
@@ -23,5 +26,39 @@ impl HostFile {
         // SAFETY: the call writes at most `length` bytes to the buffer. It returns
         // the number of bytes that are missing.
         unsafe { syscall!(READ, self.0, buffer.as_mut_ptr(), length) == 0 }
+    }
+}
+
+impl Drop for HostFile {
+    fn drop(&mut self) {
+        // SAFETY: closes a handle that has no other user.
+        unsafe { syscall!(CLOSE, self.0) };
+    }
+}
+
+/// A switch on the host: low while a file of that name exists. In the place of
+/// buttons, which cannot be pressed in QEMU.
+#[derive(Debug)]
+pub struct HostSwitch(&'static core::ffi::CStr);
+
+impl HostSwitch {
+    /// The switch with this file.
+    #[must_use]
+    pub fn new(path: &'static core::ffi::CStr) -> Self {
+        Self(path)
+    }
+}
+
+impl ErrorType for HostSwitch {
+    type Error = Infallible;
+}
+
+impl InputPin for HostSwitch {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        self.is_low().map(|low| !low)
+    }
+
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(HostFile::open(self.0).is_some())
     }
 }
