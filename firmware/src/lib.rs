@@ -26,3 +26,5 @@ pub mod machine;
 pub mod mps2;
 #[cfg(not(target_os = "none"))]
 pub mod recording;
+pub mod stages;
+pub mod workload;
