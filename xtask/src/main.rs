@@ -5,8 +5,12 @@
 //! line that installs it is printed).
 
 mod arm;
+mod bench;
+mod figures;
 mod panic_free;
 mod selftest;
+mod stack;
+mod table;
 mod tools;
 
 use std::process::ExitCode;
@@ -30,6 +34,8 @@ fn main() -> ExitCode {
         ["selftest-m7"] => selftest::run("10000"),
         ["selftest-m7", cycles] => selftest::run(cycles),
         ["panic-free-m7"] => panic_free::run(),
+        ["bench-m7"] => bench::run(false),
+        ["bench-m7", "--write"] => bench::run(true),
         ["arm-m7"] => arm::run(),
         ["missing-m7"] => tools::Tools::find().map(|_| true),
         _ => {
