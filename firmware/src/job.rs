@@ -115,14 +115,22 @@ pub fn config<T: Real>(kind: JobKind) -> ControllerConfig<T> {
     }
 }
 
+/// The controller of an experiment, from the arm's tables on.
+///
+/// # Errors
+/// Never for these constants.
+pub fn controller<T: Real>(kind: JobKind) -> Result<Controller<T>, JobError> {
+    let model = ArmModel::new(&LWR_IV).map_err(JobError::Model)?;
+    Controller::new(&model, &config(kind)).map_err(JobError::Config)
+}
+
 impl<T: Real> Job<T> {
     /// Builds the controller.
     ///
     /// # Errors
     /// Never for these constants.
     pub fn new(kind: JobKind) -> Result<Self, JobError> {
-        let model = ArmModel::new(&LWR_IV).map_err(JobError::Model)?;
-        let controller = Controller::new(&model, &config(kind)).map_err(JobError::Config)?;
+        let controller = controller(kind)?;
         let start = kind.start_deg().map(f64::to_radians).map(T::from_f64);
         let (radius_m, period_s) = kind.flange_circle();
         Ok(Self {

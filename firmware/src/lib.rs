@@ -29,3 +29,5 @@ pub mod mps2;
 #[cfg(not(target_os = "none"))]
 pub mod recording;
 pub mod remote;
+pub mod stages;
+pub mod workload;

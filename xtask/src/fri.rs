@@ -51,7 +51,18 @@ pub fn run(link: Link) -> Outcome {
     }
     println!("emergency stop: touch {}", stop.display());
     qemu.arg("-kernel").arg(&image).current_dir(&tools.work);
-    let mut running = qemu.stdin(Stdio::null()).stdout(Stdio::piped()).spawn()?;
+    qemu.stdin(Stdio::null());
+    let mut running = qemu.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
+    if let Some(errors) = running.stderr.take() {
+        std::thread::spawn(move || {
+            // Said for every datagram that comes before the board is on the network.
+            const EXPECTED: &str = "Slirp: Failed to send packet";
+            let lines = BufReader::new(errors).lines().map_while(Result::ok);
+            lines
+                .filter(|line| !line.contains(EXPECTED))
+                .for_each(|line| eprintln!("{line}"));
+        });
+    }
     if let Some(said) = running.stdout.take() {
         for line in BufReader::new(said).lines().map_while(Result::ok) {
             // "char device redirected to /dev/pts/0 (label serial0)"

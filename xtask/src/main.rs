@@ -5,9 +5,13 @@
 //! line that installs it is printed).
 
 mod arm;
+mod bench;
+mod figures;
 mod fri;
 mod panic_free;
 mod selftest;
+mod stack;
+mod table;
 mod tools;
 
 use std::process::ExitCode;
@@ -33,6 +37,8 @@ fn main() -> ExitCode {
         ["selftest-m7"] => selftest::run("10000"),
         ["selftest-m7", cycles] => selftest::run(cycles),
         ["panic-free-m7"] => panic_free::run(),
+        ["bench-m7"] => bench::run(false),
+        ["bench-m7", "--write"] => bench::run(true),
         ["arm-m7"] => arm::run(),
         ["fri-m7"] => fri::run(fri::Link::Ethernet),
         ["fri-m7", "--serial"] => fri::run(fri::Link::Serial),

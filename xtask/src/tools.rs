@@ -168,3 +168,12 @@ pub fn failed(what: &str, output: &Output) -> Trouble {
         output.status
     ))
 }
+
+/// A program of the compiler's `llvm-tools`.
+pub fn llvm_tool(name: &str) -> Result<PathBuf, Trouble> {
+    let hosts = fs::read_dir(sysroot()?.join("lib/rustlib"))?;
+    hosts
+        .filter_map(|entry| Some(entry.ok()?.path().join("bin").join(name)))
+        .find(|path| path.is_file())
+        .ok_or_else(|| Trouble::Missing(vec![("llvm-tools", "rustup component add llvm-tools")]))
+}

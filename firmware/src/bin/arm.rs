@@ -1,9 +1,204 @@
-//! to come
+//! The application as a board would run it: a cycle of 2 ms, emergency stop, drive
+//! enable and heartbeat, a log. There is no robot behind it: the arm rests in its
+//! start posture, and a script presses the emergency stop, spoils a measurement and
+//! asks for the drives again. Exit code 0 if each of them did what it should.
+
 #![cfg_attr(target_os = "none", no_std, no_main)]
+
+use core::cell::Cell;
+
+use controller_core::joint::zeros;
+use controller_core::measurement::Measurement;
+use controller_core::real::Real;
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
+use firmware::guard::{Cause, Guard};
+use firmware::job::{CYCLE_S, Job, JobKind};
+use firmware::machine::{Machine, Output};
+
+/// Cycles of the script.
+const CYCLES: u32 = 200;
+
+/// Asked for the drives.
+const ENABLED: [u32; 3] = [10, 90, 140];
+/// Emergency stop pressed from, let go at.
+const PRESSED: [u32; 2] = [60, 80];
+/// A measurement with an infinite speed.
+const SPOILT: u32 = 120;
+
+/// What the script says about a cycle.
+fn expected(cycle: u32) -> Option<Cause> {
+    match cycle {
+        60..80 => Some(Cause::EmergencyStop),
+        120..140 => Some(Cause::Controller),
+        0..10 | 80..90 => Some(Cause::NotEnabled),
+        _ => None,
+    }
+}
+
+/// The button of the board, and the script's finger on it.
+struct Switch<'a, P> {
+    button: P,
+    pressed: &'a Cell<bool>,
+}
+
+impl<P: ErrorType> ErrorType for Switch<'_, P> {
+    type Error = P::Error;
+}
+
+impl<P: InputPin> InputPin for Switch<'_, P> {
+    fn is_high(&mut self) -> Result<bool, P::Error> {
+        Ok(self.button.is_high()? && !self.pressed.get())
+    }
+
+    fn is_low(&mut self) -> Result<bool, P::Error> {
+        self.is_high().map(|high| !high)
+    }
+}
+
+/// Runs the script; `seen` is told every cycle. None if the constants are refused.
+fn run<T: Real>(
+    button: impl InputPin,
+    drives: impl OutputPin,
+    heartbeat: impl OutputPin,
+    mut delay: impl DelayNs,
+    mut seen: impl FnMut(u32, &Output<T>),
+) -> Option<bool> {
+    let job = Job::<T>::new(JobKind::TwoLevel).ok()?;
+    let pressed = Cell::new(false);
+    let switch = Switch {
+        button,
+        pressed: &pressed,
+    };
+    let guard = Guard::new(switch, drives, heartbeat);
+    let mut machine = Machine::new(job.controller.clone(), guard);
+    let mut as_expected = true;
+    for cycle in 0..CYCLES {
+        if ENABLED.contains(&cycle) {
+            machine.enable();
+        }
+        pressed.set((PRESSED[0]..PRESSED[1]).contains(&cycle));
+        let mut measurement = Measurement {
+            q: job.origin.posture,
+            dq: zeros(),
+            interval_s: T::from_f64(CYCLE_S),
+        };
+        if cycle == SPOILT {
+            measurement.dq[3] = T::ONE / T::ZERO;
+        }
+        let output = machine.cycle(&measurement, &job.origin);
+        as_expected &= output.stopped == expected(cycle)
+            && (output.stopped.is_none() || output.torque.iter().all(|&torque| torque == T::ZERO));
+        seen(cycle, &output);
+        delay.delay_us((CYCLE_S * 1e6) as u32);
+    }
+    machine.release();
+    Some(as_expected)
+}
+
 #[cfg(not(target_os = "none"))]
-fn main() {}
+fn main() -> std::process::ExitCode {
+    use core::convert::Infallible;
+
+    /// A button that nobody presses, LEDs that nobody sees, no waiting.
+    struct Nothing;
+
+    impl ErrorType for Nothing {
+        type Error = Infallible;
+    }
+
+    impl InputPin for Nothing {
+        fn is_high(&mut self) -> Result<bool, Infallible> {
+            Ok(true)
+        }
+        fn is_low(&mut self) -> Result<bool, Infallible> {
+            Ok(false)
+        }
+    }
+
+    impl OutputPin for Nothing {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            Ok(())
+        }
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    impl DelayNs for Nothing {
+        fn delay_ns(&mut self, _: u32) {}
+    }
+
+    let mut last = None;
+    let done = run::<f64>(Nothing, Nothing, Nothing, Nothing, |cycle, output| {
+        if last != Some(output.stopped) {
+            last = Some(output.stopped);
+            let torque = output.torque[1];
+            match (output.stopped, output.step.status.fault) {
+                (None, _) => println!("cycle {cycle}: drives on, joint 2 {torque:.3} Nm"),
+                (Some(Cause::Controller), Some(fault)) => println!("cycle {cycle}: {fault}"),
+                (Some(cause), _) => println!("cycle {cycle}: drives off, {cause:?}"),
+            }
+        }
+    });
+    std::process::ExitCode::from(u8::from(done != Some(true)))
+}
+
 #[cfg(target_os = "none")]
-#[panic_handler]
-fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
-    firmware::mps2::panicked(info)
+mod target {
+    use core::sync::atomic::{AtomicU32, Ordering};
+
+    use cortex_m_rt::entry;
+    use defmt_semihosting as _;
+    use firmware::mps2::{self, Button, Counter, Led};
+
+    use super::{Cause, run};
+
+    /// For the time stamps of the log.
+    static CYCLE: AtomicU32 = AtomicU32::new(0);
+
+    defmt::timestamp!("{=u32} ms", 2 * CYCLE.load(Ordering::Relaxed));
+
+    #[panic_handler]
+    fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+        // Safe levels first: whatever went wrong may not print.
+        let (mut drives, mut heartbeat) = (Led::new(0), Led::new(1));
+        drives.force_low();
+        heartbeat.force_low();
+        mps2::panicked(info)
+    }
+
+    #[entry]
+    fn main() -> ! {
+        let (drives, heartbeat) = (Led::new(0), Led::new(1));
+        let mut last = None;
+        let mut beats = (false, 0u32);
+        let mut levels = true;
+        let counter = Counter::start();
+        let done = run::<f64>(
+            Button::new(0),
+            drives,
+            heartbeat,
+            counter,
+            |cycle, output| {
+                CYCLE.store(cycle, Ordering::Relaxed);
+                // The register itself, not what was meant to be written.
+                let (drives, heartbeat) = (Led::new(0).is_on(), Led::new(1).is_on());
+                levels &= drives == output.stopped.is_none();
+                beats.1 += u32::from(heartbeat != beats.0);
+                beats.0 = heartbeat;
+                if last != Some(output.stopped) {
+                    last = Some(output.stopped);
+                    match (output.stopped, output.step.status.fault) {
+                        (None, _) => defmt::info!("drives on, joint 2 {} Nm", output.torque[1]),
+                        (Some(Cause::Controller), Some(fault)) => defmt::error!("{}", fault),
+                        (Some(cause), _) => defmt::warn!("drives off, {}", cause),
+                    }
+                }
+            },
+        );
+        let off = !Led::new(0).is_on() && !Led::new(1).is_on();
+        defmt::info!("{} heartbeats, outputs safe at the end: {}", beats.1, off);
+        mps2::exit(done == Some(true) && levels && off)
+    }
 }

@@ -1,9 +1,200 @@
-//! to come
+//! Instructions, stack and sizes of a cycle on the Cortex-M7, printed as lines of
+//! words for `cargo bench-m7`. The host prints the lines `inputs`, which must be the
+//! same on the target: torques agree to the last bit on adverse inputs too.
+
 #![cfg_attr(target_os = "none", no_std, no_main)]
+
+use controller_core::controller::{Controller, Step};
+use controller_core::measurement::{Measurement, Reference};
+use firmware::job::{self, JobKind};
+use firmware::stages::{Rig, Survey};
+use firmware::workload;
+
 #[cfg(not(target_os = "none"))]
-fn main() {}
+use std::println as say;
+
 #[cfg(target_os = "none")]
-#[panic_handler]
-fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
-    firmware::mps2::panicked(info)
+use cortex_m_semihosting::hprintln as say;
+
+/// Constructor and cycle with names of their own: where the stack is looked at.
+macro_rules! measured {
+    ($float:ident, $build:ident, $cycle:ident) => {
+        #[inline(never)]
+        fn $build(kind: JobKind) -> Option<Controller<$float>> {
+            job::controller(kind).ok()
+        }
+
+        #[inline(never)]
+        fn $cycle(
+            rig: &mut Rig<$float>,
+            measurement: &Measurement<$float>,
+            reference: &Reference<$float>,
+        ) -> Step<$float> {
+            rig.cycle(measurement, reference)
+        }
+    };
+}
+
+measured!(f64, build_f64, cycle_f64);
+measured!(f32, build_f32, cycle_f32);
+
+fn print_inputs(name: &str, precision: &str, survey: &Survey) {
+    say!(
+        "inputs {} {} {} faults {} saturated {} deficient {} checksum {:016x}",
+        name,
+        precision,
+        workload::COUNT,
+        survey.faults,
+        survey.saturated,
+        survey.deficient,
+        survey.checksum
+    );
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    use firmware::stages::{Clock, survey};
+
+    /// The host counts nothing.
+    struct Still;
+
+    impl Clock for Still {
+        fn ticks(&self) -> u32 {
+            0
+        }
+        fn instructions(&self, ticks: u32) -> u32 {
+            ticks
+        }
+    }
+
+    for kind in JobKind::ALL {
+        if let Some(mut rig) = build_f64(kind).map(Rig::new) {
+            print_inputs(kind.name(), "f64", &survey(&mut rig, &Still, cycle_f64));
+        }
+        if let Some(mut rig) = build_f32(kind).map(Rig::new) {
+            print_inputs(kind.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
+        }
+    }
+}
+
+#[cfg(target_os = "none")]
+mod target {
+    use core::hint::black_box;
+    use core::mem::size_of;
+
+    use controller_core::controller::ControllerState;
+    use controller_core::model::ArmModel;
+    use controller_core::record::CycleRecord;
+    use cortex_m_rt::entry;
+    use firmware::log::Number;
+    use firmware::mps2::{self, Counter, high_water, instructions};
+    use firmware::stages::{Clock, Extremes, STAGES, overhead, survey};
+    use firmware::workload::Kind;
+
+    use super::*;
+
+    #[panic_handler]
+    fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+        mps2::panicked(info)
+    }
+
+    struct Board(Counter);
+
+    impl Clock for Board {
+        #[inline(always)]
+        fn ticks(&self) -> u32 {
+            self.0.ticks()
+        }
+        fn instructions(&self, ticks: u32) -> u32 {
+            instructions(ticks)
+        }
+    }
+
+    #[entry]
+    fn main() -> ! {
+        let board = Board(Counter::start());
+        say!("calibration {}", overhead(&board));
+        let mut complete = true;
+        for kind in JobKind::ALL {
+            complete &= measure(kind, &board, build_f64, cycle_f64);
+            complete &= measure(kind, &board, build_f32, cycle_f32);
+        }
+        sizes::<f64>();
+        sizes::<f32>();
+        mps2::exit(complete)
+    }
+
+    fn measure<T: Number>(
+        kind: JobKind,
+        board: &Board,
+        build: fn(JobKind) -> Option<Controller<T>>,
+        cycle: fn(&mut Rig<T>, &Measurement<T>, &Reference<T>) -> Step<T>,
+    ) -> bool {
+        let name = kind.name();
+        let init = high_water(|| {
+            black_box(build(black_box(kind)));
+        });
+        let Some(mut rig) = build(kind).map(Rig::new) else {
+            return false;
+        };
+        let found = survey(&mut rig, board, cycle);
+        print_inputs(name, T::NAME, &found);
+        let print = |stage: &str, cost: &Extremes| {
+            let worst = Kind::of(cost.at).0.name();
+            let (min, max) = (cost.min, cost.max);
+            say!(
+                "cost {} {} {} {} {} {}",
+                name,
+                T::NAME,
+                min,
+                max,
+                worst,
+                stage
+            );
+        };
+        print("cycle", &found.cycle);
+        for (stage, cost) in STAGES.iter().zip(&found.stages) {
+            print(stage, cost);
+        }
+        let (measurement, _) = workload::input(&rig.controller, found.cycle.at);
+        let (q, dq) = (measurement.q, measurement.dq);
+        say!(
+            "worst {} {} {} q {:?} dq {:?}",
+            name,
+            T::NAME,
+            found.cycle.at,
+            q.data.0,
+            dq.data.0
+        );
+
+        let mut step = 0;
+        for index in 0..workload::COUNT {
+            // Every adverse input, every tenth of the others.
+            if Kind::of(index).0 == Kind::Random && index % 10 != 0 {
+                continue;
+            }
+            let (measurement, reference) = workload::input(&rig.controller, index);
+            step = step.max(high_water(|| {
+                black_box(cycle(
+                    &mut rig,
+                    black_box(&measurement),
+                    black_box(&reference),
+                ));
+            }));
+        }
+        say!("stack {} {} init {} cycle {}", name, T::NAME, init, step);
+        found.faults == 0
+    }
+
+    fn sizes<T: Number>() {
+        say!(
+            "size {} model {} controller {} state {} step {} record {}",
+            T::NAME,
+            size_of::<ArmModel<T>>(),
+            size_of::<Controller<T>>(),
+            size_of::<ControllerState<T>>(),
+            size_of::<Step<T>>(),
+            size_of::<CycleRecord<T>>()
+        );
+    }
 }

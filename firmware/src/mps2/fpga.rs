@@ -67,6 +67,11 @@ impl Led {
         }
     }
 
+    /// Off, for a panic handler.
+    pub fn force_low(&mut self) {
+        self.set(false);
+    }
+
     /// What the register says.
     #[must_use]
     pub fn is_on(&self) -> bool {

@@ -1,0 +1,185 @@
+//! Emergency stop, drive enable and heartbeat on pins that check every call.
+
+use controller_core::joint::JointVector;
+use controller_core::measurement::Measurement;
+use embedded_hal_mock::eh1::MockError;
+use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
+use firmware::guard::{Cause, Guard};
+use firmware::job::{CYCLE_S, Job, JobKind};
+use firmware::machine::Machine;
+
+const HIGH: State = State::High;
+const LOW: State = State::Low;
+
+/// An input that gives these levels, one per cycle, an output that expects these.
+fn input(levels: &[State]) -> Mock {
+    let calls: Vec<_> = levels.iter().copied().map(Transaction::get).collect();
+    Mock::new(&calls)
+}
+
+fn output(levels: &[State]) -> Mock {
+    let calls: Vec<_> = levels.iter().copied().map(Transaction::set).collect();
+    Mock::new(&calls)
+}
+
+/// Plays the cycles, then releases (which makes safe once more) and checks that
+/// every expected call was made.
+fn play(
+    stop: &[State],
+    drives: &[State],
+    heartbeat: &[State],
+    script: impl FnOnce(&mut Guard<Mock, Mock, Mock>),
+) {
+    let mut guard = Guard::new(input(stop), output(drives), output(heartbeat));
+    script(&mut guard);
+    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    stop.done();
+    drives.done();
+    heartbeat.done();
+}
+
+#[test]
+fn drives_wait_for_a_request_and_the_heart_beats_without() {
+    play(
+        &[HIGH; 4],
+        &[LOW, LOW, LOW, HIGH, HIGH, LOW],
+        &[LOW, HIGH, LOW, HIGH, LOW, LOW],
+        |guard| {
+            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+            guard.enable();
+            assert_eq!(guard.cycle(true), Ok(()));
+            assert_eq!(guard.cycle(true), Ok(()));
+        },
+    );
+}
+
+#[test]
+fn the_emergency_stop_is_safe_in_its_cycle_and_stays_so_when_let_go() {
+    play(
+        &[HIGH, LOW, HIGH, HIGH],
+        &[LOW, HIGH, LOW, LOW, HIGH, LOW],
+        &[LOW, HIGH, LOW, HIGH, LOW, LOW],
+        |guard| {
+            guard.enable();
+            assert_eq!(guard.cycle(true), Ok(()));
+            assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
+            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+            guard.enable();
+            assert_eq!(guard.cycle(true), Ok(()));
+        },
+    );
+}
+
+#[test]
+fn a_request_while_the_stop_is_pressed_counts_for_nothing() {
+    play(
+        &[LOW, HIGH],
+        &[LOW, LOW, LOW, LOW],
+        &[LOW, LOW, HIGH, LOW],
+        |guard| {
+            guard.enable();
+            assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
+            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+        },
+    );
+}
+
+#[test]
+fn a_fault_is_safe_in_its_cycle_and_the_heart_stands_still() {
+    play(
+        &[HIGH; 4],
+        &[LOW, HIGH, LOW, LOW, LOW, LOW],
+        &[LOW, HIGH, LOW, LOW, HIGH, LOW],
+        |guard| {
+            guard.enable();
+            assert_eq!(guard.cycle(true), Ok(()));
+            assert_eq!(guard.cycle(false), Err(Cause::Controller));
+            assert_eq!(guard.cycle(false), Err(Cause::Controller));
+            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+        },
+    );
+}
+
+#[test]
+fn a_stop_that_cannot_be_read_counts_as_pressed() {
+    let broken = Transaction::get(HIGH).with_error(MockError::Io(std::io::ErrorKind::Other));
+    let stop = Mock::new(&[Transaction::get(HIGH), broken]);
+    let mut guard = Guard::new(
+        stop,
+        output(&[LOW, HIGH, LOW, LOW]),
+        output(&[LOW, HIGH, LOW, LOW]),
+    );
+    guard.enable();
+    assert_eq!(guard.cycle(true), Ok(()));
+    assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
+    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    stop.done();
+    drives.done();
+    heartbeat.done();
+}
+
+#[test]
+fn an_output_that_fails_takes_the_other_one_down() {
+    let broken = Transaction::set(HIGH).with_error(MockError::Io(std::io::ErrorKind::Other));
+    let drives = Mock::new(&[
+        Transaction::set(LOW),
+        broken,
+        Transaction::set(LOW),
+        Transaction::set(LOW),
+    ]);
+    let mut guard = Guard::new(input(&[HIGH]), drives, output(&[LOW, HIGH, LOW, LOW]));
+    guard.enable();
+    assert_eq!(guard.cycle(true), Err(Cause::Output));
+    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    stop.done();
+    drives.done();
+    heartbeat.done();
+}
+
+/// The whole machine: torque only while the drives run, zero from the cycle of a
+/// fault on, and again after it is cleared on purpose.
+#[test]
+fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
+    let job = Job::<f64>::new(JobKind::TwoLevel).expect("a valid job");
+    let guard = Guard::new(
+        input(&[HIGH; 5]),
+        output(&[LOW, LOW, HIGH, LOW, LOW, HIGH, LOW]),
+        output(&[LOW, HIGH, LOW, LOW, LOW, HIGH, LOW]),
+    );
+    let mut machine = Machine::new(job.controller.clone(), guard);
+    let good = Measurement {
+        q: job.origin.posture,
+        dq: JointVector::zeros(),
+        interval_s: CYCLE_S,
+    };
+    let mut bad = good;
+    bad.dq[3] = f64::NAN;
+
+    let waiting = machine.cycle(&good, &job.reference(0));
+    assert_eq!(waiting.stopped, Some(Cause::NotEnabled));
+    assert_eq!(waiting.torque, JointVector::zeros());
+    machine.enable();
+    let running = machine.cycle(&good, &job.reference(1));
+    assert_eq!(running.stopped, None);
+    assert_eq!(running.torque, running.step.torque);
+    assert!(running.torque[1].abs() > 10.0);
+    let stopped = machine.cycle(&bad, &job.reference(2));
+    assert_eq!(stopped.stopped, Some(Cause::Controller));
+    assert_eq!(stopped.torque, JointVector::zeros());
+    let latched = machine.cycle(&good, &job.reference(3));
+    assert_eq!(latched.stopped, Some(Cause::Controller));
+    machine.enable();
+    assert_eq!(machine.cycle(&good, &job.reference(4)).stopped, None);
+
+    let numbers: Vec<_> = machine
+        .recorder()
+        .iter()
+        .map(|cycle| cycle.number)
+        .collect();
+    assert_eq!(numbers, [0, 1, 2, 3, 4]);
+    let (mut stop, mut drives, mut heartbeat) = machine.release();
+    stop.done();
+    drives.done();
+    heartbeat.done();
+}

@@ -1,0 +1,142 @@
+//! Instructions, stack and memory of the cycle, against the committed figures.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::Outcome;
+use crate::figures::Figures;
+use crate::stack::CallGraph;
+use crate::table;
+use crate::tools::{Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
+
+const JSON: &str = "docs/timing.json";
+const TABLE: &str = "docs/timing.md";
+
+/// How much a figure may grow before the check fails.
+const ALLOWANCE: f64 = 0.02;
+
+/// Measures; compares with the committed figures, or writes them anew.
+pub fn run(write: bool) -> Outcome {
+    let tools = Tools::find()?;
+    let figures = measure(&tools)?;
+    print!("{}", table::summary(&figures));
+    let (json, text) = (tools.root.join(JSON), tools.root.join(TABLE));
+    if write {
+        let data = serde_json::to_string_pretty(&figures)
+            .map_err(|error| Trouble::Content(error.to_string()))?;
+        fs::write(&json, data + "\n")?;
+        fs::write(&text, table::page(&figures))?;
+        println!("written: {JSON}, {TABLE}");
+        return Ok(true);
+    }
+    let committed: Figures = serde_json::from_str(&fs::read_to_string(&json)?)
+        .map_err(|error| Trouble::Content(format!("{JSON}: {error}")))?;
+    let larger = compare(&figures.bounded(), &committed.bounded());
+    for line in &larger {
+        println!("{line}");
+    }
+    if larger.is_empty() {
+        println!("no figure is more than 2 % above {JSON}");
+    }
+    Ok(larger.is_empty())
+}
+
+fn measure(tools: &Tools) -> Result<Figures, Trouble> {
+    let image = tools.image("bench", &[])?;
+    let output = tools.emulate(&image, &["-icount", "shift=10,sleep=off"])?;
+    if !output.status.success() {
+        return Err(failed("the image bench", &output));
+    }
+    let said = String::from_utf8_lossy(&output.stdout);
+    let here: Vec<&str> = said
+        .lines()
+        .filter(|line| line.starts_with("inputs"))
+        .collect();
+    let host = tools.host("bench", &[])?;
+    if here != host.lines().collect::<Vec<_>>() {
+        let text = format!("torques differ:\nhost:\n{host}target:\n{}", here.join("\n"));
+        return Err(Trouble::Content(text));
+    }
+
+    let mut figures = Figures::parse(&said)?;
+    let graph = CallGraph::of(&image)?;
+    for controller in &mut figures.controllers {
+        let precision = &controller.precision;
+        let cycle = graph.below(&format!("cycle_{precision}"));
+        let init = graph.below(&format!("build_{precision}"));
+        for trouble in [&cycle, &init].into_iter().filter_map(|r| r.as_ref().err()) {
+            println!("{trouble}");
+        }
+        controller.code = cycle.as_ref().map_or(0, |below| below.code);
+        controller.stack.cycle_bound = cycle.ok().map(|below| below.stack);
+        controller.stack.init_bound = init.ok().map(|below| below.stack);
+    }
+    figures.image = memory(&tools.image("arm", &[])?)?;
+    figures.tools = BTreeMap::from([
+        ("rustc".into(), first_line("rustc", &["--version"])?),
+        ("qemu".into(), qemu_version()?),
+        ("profile".into(), "release, target-cpu=cortex-m7".into()),
+    ]);
+    Ok(figures)
+}
+
+/// Flash and RAM of an image.
+fn memory(image: &Path) -> Result<BTreeMap<String, u64>, Trouble> {
+    let output = Command::new(llvm_tool("llvm-size")?)
+        .arg("-A")
+        .arg(image)
+        .output()?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let section = |name: &str| {
+        let line = text
+            .lines()
+            .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+        let size = line.and_then(|rest| rest.split_whitespace().next()?.parse::<u64>().ok());
+        size.unwrap_or(0)
+    };
+    let flash = [".vector_table", ".text", ".rodata", ".data", ".gnu.sgstubs"];
+    let ram = [".data", ".bss", ".uninit"];
+    Ok(BTreeMap::from([
+        ("flash".into(), flash.map(section).iter().sum()),
+        ("ram without stack".into(), ram.map(section).iter().sum()),
+    ]))
+}
+
+/// What has grown by more than the allowance, or is new.
+fn compare(now: &BTreeMap<String, u64>, before: &BTreeMap<String, u64>) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (name, &value) in now {
+        match before.get(name) {
+            None => lines.push(format!("{name}: {value}, not in the committed figures")),
+            Some(&old) if value as f64 > old as f64 * (1.0 + ALLOWANCE) => {
+                lines.push(format!("{name}: {value}, committed {old}; allowed +2 %"));
+            }
+            Some(_) => {}
+        }
+    }
+    lines.extend(
+        (before.keys())
+            .filter(|name| !now.contains_key(*name))
+            .map(|name| format!("{name}: committed, but not measured")),
+    );
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_percent_are_allowed() {
+        let before = BTreeMap::from([("a".to_string(), 1000), ("b".to_string(), 10)]);
+        let with = |a, b| BTreeMap::from([("a".to_string(), a), ("b".to_string(), b)]);
+        assert!(compare(&with(1020, 10), &before).is_empty());
+        assert!(compare(&with(1, 1), &before).is_empty());
+        assert_eq!(compare(&with(1021, 10), &before).len(), 1);
+        assert_eq!(compare(&with(1021, 11), &before).len(), 2);
+        assert_eq!(compare(&BTreeMap::new(), &before).len(), 2);
+        assert_eq!(compare(&before, &BTreeMap::new()).len(), 2);
+    }
+}

@@ -1,0 +1,250 @@
+//! A bound on the stack and the size of the code below a function, from the
+//! disassembly of an image: frames from the instructions that lower the stack
+//! pointer, the call graph from branches and calls.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+use crate::tools::{Trouble, failed, llvm_tool};
+
+/// Branches and calls to an address.
+const BRANCHES: [&str; 18] = [
+    "b", "bl", "beq", "bne", "bhs", "blo", "bmi", "bpl", "bvs", "bvc", "bhi", "bls", "bge", "blt",
+    "bgt", "ble", "cbz", "cbnz",
+];
+
+/// An image taken apart.
+pub struct CallGraph {
+    functions: BTreeMap<u64, Function>,
+}
+
+#[derive(Default)]
+struct Function {
+    name: String,
+    /// Behind its last instruction or constant.
+    end: u64,
+    /// Everything that any of its instructions takes from the stack \[bytes\].
+    frame: u64,
+    callees: BTreeSet<u64>,
+    /// An instruction that cannot be followed.
+    opaque: Option<String>,
+}
+
+/// What is below a function, itself included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Below {
+    /// Largest use of the stack \[bytes\].
+    pub stack: u64,
+    /// Size of all code that can be reached \[bytes\].
+    pub code: u64,
+}
+
+impl CallGraph {
+    /// Takes an image apart.
+    pub fn of(image: &Path) -> Result<Self, Trouble> {
+        let mut objdump = Command::new(llvm_tool("llvm-objdump")?);
+        objdump.args(["--disassemble", "--demangle", "--no-show-raw-insn"]);
+        let output = objdump.arg("--mcpu=cortex-m7").arg(image).output()?;
+        if !output.status.success() {
+            return Err(failed("llvm-objdump", &output));
+        }
+        Ok(Self::parse(&String::from_utf8_lossy(&output.stdout)))
+    }
+
+    fn parse(text: &str) -> Self {
+        let mut functions: BTreeMap<u64, Function> = BTreeMap::new();
+        let mut present = 0;
+        for line in text.lines() {
+            if let Some((address, name)) = header(line) {
+                present = address;
+                functions.entry(address).or_default().name = name.to_string();
+            } else if let Some((address, mnemonic, operands)) = instruction(line)
+                && let Some(function) = functions.get_mut(&present)
+            {
+                function.end = address + 4;
+                function.read(mnemonic, operands);
+            }
+        }
+        // Branches within a function are no calls.
+        for (&start, function) in &mut functions {
+            let own = start..function.end;
+            function
+                .callees
+                .retain(|&callee| callee == start || !own.contains(&callee));
+        }
+        Self { functions }
+    }
+
+    /// Everything below the function whose path contains `name`.
+    pub fn below(&self, name: &str) -> Result<Below, Trouble> {
+        let pattern = format!("::{name}::");
+        let mut found = (self.functions.iter()).filter(|(_, f)| f.name.contains(&pattern));
+        let (Some((&start, _)), None) = (found.next(), found.next()) else {
+            return Err(Trouble::Content(format!(
+                "not one function {name} in the image"
+            )));
+        };
+        let mut depths = BTreeMap::new();
+        let stack = self.depth(start, &mut Vec::new(), &mut depths)?;
+        let sizes = depths.keys().filter_map(|start| {
+            let function = self.functions.get(start)?;
+            Some(function.end - start)
+        });
+        Ok(Below {
+            stack,
+            code: sizes.sum(),
+        })
+    }
+
+    fn depth(
+        &self,
+        start: u64,
+        path: &mut Vec<u64>,
+        depths: &mut BTreeMap<u64, u64>,
+    ) -> Result<u64, Trouble> {
+        if let Some(&depth) = depths.get(&start) {
+            return Ok(depth);
+        }
+        let Some(function) = self.functions.get(&start) else {
+            return Err(Trouble::Content(format!(
+                "a call into nothing at {start:x}"
+            )));
+        };
+        let name = &function.name;
+        if path.contains(&start) {
+            return Err(Trouble::Content(format!("{name} calls itself: no bound")));
+        }
+        if let Some(line) = &function.opaque {
+            return Err(Trouble::Content(format!("no bound through {name}: {line}")));
+        }
+        path.push(start);
+        let mut deepest = 0;
+        for &callee in &function.callees {
+            deepest = deepest.max(self.depth(callee, path, depths)?);
+        }
+        path.pop();
+        depths.insert(start, function.frame + deepest);
+        Ok(function.frame + deepest)
+    }
+}
+
+impl Function {
+    fn read(&mut self, mnemonic: &str, operands: &str) {
+        let base = mnemonic.split('.').next().unwrap_or_default();
+        let to_stack_pointer = operands.starts_with("sp,") || operands.starts_with("sp!,");
+        match base {
+            "push" => self.frame += 4 * registers(operands),
+            "stmdb" if to_stack_pointer => self.frame += 4 * registers(operands),
+            "vpush" if operands.contains('d') => self.frame += 8 * registers(operands),
+            "vpush" => self.frame += 4 * registers(operands),
+            "sub" | "subw" if to_stack_pointer => match immediate(operands) {
+                Some(bytes) => self.frame += bytes,
+                None => self.opaque = Some(format!("{mnemonic} {operands}")),
+            },
+            // Frames that end: by the frame pointer or by what was taken.
+            "add" | "addw" if to_stack_pointer => {}
+            "mov" | "bic" | "and" if to_stack_pointer && !operands.starts_with("sp, r7") => {
+                self.opaque = Some(format!("{mnemonic} {operands}"));
+            }
+            "str" | "strd" if operands.contains("[sp, #-") && operands.ends_with(']') => {}
+            "str" | "strd" if operands.contains("[sp, #-") => {
+                self.frame += immediate(operands.replace("#-", "#").as_str()).unwrap_or(8);
+            }
+            "blx" => self.opaque = Some(format!("{mnemonic} {operands}")),
+            "bx" if operands != "lr" => self.opaque = Some(format!("{mnemonic} {operands}")),
+            _ if BRANCHES.contains(&base) => self.callees.extend(target(operands)),
+            _ => {}
+        }
+    }
+}
+
+/// `0002dea0 <bench::cycle_f64::h681b>:`
+fn header(line: &str) -> Option<(u64, &str)> {
+    let (address, name) = line.strip_suffix(">:")?.split_once(" <")?;
+    Some((u64::from_str_radix(address, 16).ok()?, name))
+}
+
+/// `   2dea8:      	sub	sp, #0x114`
+fn instruction(line: &str) -> Option<(u64, &str, &str)> {
+    let (address, rest) = line.split_once(':')?;
+    let address = u64::from_str_radix(address.trim(), 16).ok()?;
+    let rest = rest.trim();
+    let (mnemonic, operands) = rest.split_once('\t').unwrap_or((rest, ""));
+    Some((address, mnemonic.trim(), operands.trim()))
+}
+
+/// How many registers a list names.
+fn registers(operands: &str) -> u64 {
+    let list = operands.split(['{', '}']).nth(1).unwrap_or_default();
+    list.split(',')
+        .filter(|name| !name.trim().is_empty())
+        .count() as u64
+}
+
+/// The last `#0x..` or `#..`.
+fn immediate(operands: &str) -> Option<u64> {
+    let digits = operands.rsplit_once('#')?.1.trim_end_matches(['!', ']']);
+    let digits = digits.split_whitespace().next()?;
+    match digits.strip_prefix("0x") {
+        Some(hex) => u64::from_str_radix(hex, 16).ok(),
+        None => digits.parse().ok(),
+    }
+}
+
+/// The address that a branch goes to.
+fn target(operands: &str) -> Option<u64> {
+    let (_, hex) = operands.split_once("0x")?;
+    let digits = hex.split(|c: char| !c.is_ascii_hexdigit()).next()?;
+    u64::from_str_radix(digits, 16).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const IMAGE: &str = "
+00000100 <a::outer::h1>:
+     100:      \tpush\t{r4, r5, r7, lr}
+     102:      \tvpush\t{d8, d9}
+     104:      \tsub.w\tsp, sp, #0x108
+     108:      \tbl\t0x200 <a::inner::h2> @ imm = #0xf4
+     10c:      \tbne\t0x104 <a::outer::h1+0x4> @ imm = #-8
+     10e:      \tb.w\t0x300 <leaf> @ imm = #0x200
+
+00000200 <a::inner::h2>:
+     200:      \tstr\tlr, [sp, #-0x8]!
+     204:      \tbx\tlr
+
+00000300 <leaf>:
+     300:      \tbx\tlr
+
+00000400 <a::open::h3>:
+     400:      \tblx\tr3
+";
+
+    #[test]
+    fn frames_add_up_along_the_deepest_path() {
+        let graph = CallGraph::parse(IMAGE);
+        let below = graph.below("outer").expect("a bound");
+        assert_eq!(below.stack, 16 + 16 + 0x108 + 8);
+        assert_eq!(below.code, 0x12 + 8 + 4);
+    }
+
+    #[test]
+    fn what_cannot_be_followed_has_no_bound() {
+        let graph = CallGraph::parse(IMAGE);
+        assert!(graph.below("open").is_err());
+        assert!(graph.below("missing").is_err());
+    }
+
+    #[test]
+    fn recursion_has_no_bound() {
+        let text = "
+00000100 <a::round::h1>:
+     100:      \tpush\t{r7, lr}
+     102:      \tbl\t0x100 <a::round::h1> @ imm = #-4
+";
+        assert!(CallGraph::parse(text).below("round").is_err());
+    }
+}
