@@ -165,7 +165,7 @@ fn header(line: &str) -> Option<(u64, &str)> {
     Some((u64::from_str_radix(address, 16).ok()?, name))
 }
 
-/// `   2dea8:      	sub	sp, #0x114`
+/// `   2dea8:       sub sp, #0x114`
 fn instruction(line: &str) -> Option<(u64, &str, &str)> {
     let (address, rest) = line.split_once(':')?;
     let address = u64::from_str_radix(address.trim(), 16).ok()?;
