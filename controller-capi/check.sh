@@ -65,14 +65,14 @@ expected() {
 }
 
 for precision in f64 f32; do
-  expected "$precision" > "$out/replay-$precision"
+  expected "$precision" > "$out/rust-$precision"
 done
-echo "replay in Rust: $(tail -n 1 "$out/replay-f64") (f64), $(tail -n 1 "$out/replay-f32") (f32)"
+echo "replay in Rust: $(tail -n 1 "$out/rust-f64") (f64), $(tail -n 1 "$out/rust-f32") (f32)"
 
 
 # same NAME PRECISION: what a C program printed against the replay in Rust.
 same() {
-  diff "$out/replay-$2" "$out/$1" || fail "$1: torques are not those of Rust"
+  diff "$out/rust-$2" "$out/$1" || fail "$1: torques are not those of Rust"
   echo "$1: equal to Rust in every bit"
 }
 

@@ -86,6 +86,7 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
             interval_s: Scalar::from_f64(interval_s),
         };
         let step = controller.step(&mut state, &measurement, &reference);
+        state.applied(&step.gravity);
         let fault = step.status.fault.map_or(0, |fault| fault.kind as u64);
         saturated += u32::from(step.status.saturated.any());
         let numbers = step.torque.iter().chain(&step.residual);

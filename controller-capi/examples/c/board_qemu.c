@@ -40,7 +40,7 @@ void reset(void) {
     board_exit(main());
 }
 
-__attribute__((section(".vectors"), used)) static const void *const vectors[16] = {
-    &stack_top, (const void *)reset,    (const void *)on_fault, (const void *)on_fault,
-    (const void *)on_fault, (const void *)on_fault, (const void *)on_fault,
-};
+__attribute__((section(".vectors"), used)) static const struct {
+    uint32_t *stack;
+    void (*handlers[15])(void);
+} vectors = {&stack_top, {reset, on_fault, on_fault, on_fault, on_fault, on_fault}};

@@ -60,7 +60,7 @@ static void must(StratumResult result) {
 }
 
 int main(void) {
-    double q[7], dq[7], torque[7], residual[7];
+    double q[7], dq[7], torque[7], residual[7], gravity[7];
     StratumReference reference;
     StratumStatus status;
     uint32_t saturated = 0;
@@ -88,6 +88,8 @@ int main(void) {
         double interval_s = cycle == 3000 ? -1.0 : 1.0 / 512.0;
         hash_bits((uint64_t)stratum_step(&controller, &state, q, dq, interval_s, torque));
         must(stratum_residual(&state, residual));
+        must(stratum_gravity(&state, gravity)); /* what moved the arm, the observer is told */
+        must(stratum_applied(&state, gravity));
         must(stratum_status(&state, &status));
         saturated += status.saturated != 0;
         for (int i = 0; i < 7; i++) hash_bits(bits_of(torque[i]));
