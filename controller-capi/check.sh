@@ -22,8 +22,12 @@ for candidate in cbindgen "$build/tools/bin/cbindgen"; do
     cbindgen=$candidate
   fi
 done
-if [ -z "$cbindgen" ] && cargo install cbindgen --version "$cbindgen_version" --locked --quiet --root "$build/tools"; then
-  cbindgen=$build/tools/bin/cbindgen
+if [ -z "$cbindgen" ]; then
+  step "installing cbindgen $cbindgen_version, once: takes minutes"
+  if cargo install cbindgen --version "$cbindgen_version" --locked --quiet \
+    --root "$build/tools" --target-dir "$build/tools/build"; then
+    cbindgen=$build/tools/bin/cbindgen
+  fi
 fi
 header() { "$cbindgen" controller-capi --quiet --config "$crate/cbindgen.toml" --output "$1"; }
 
