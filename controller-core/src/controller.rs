@@ -176,11 +176,15 @@ impl<T: Real> Controller<T> {
     #[must_use]
     pub fn place(&self, joints: &JointState<T>) -> Reference<T> {
         let kinematics = Kinematics::new(&self.model, joints);
-        let tasks = self.tasks.iter().map(|task| task.place(&kinematics));
-        Reference {
-            tasks: tasks.collect(),
+        let mut reference = Reference {
+            tasks: Vec::new(),
             posture: joints.q,
+        };
+        for task in &self.tasks {
+            // Never full: as many places as levels. Collecting would carry a panic.
+            let _ = reference.tasks.push(task.place(&kinematics));
         }
+        reference
     }
 
     /// One cycle. Never fails and never panics: with a measurement or reference

@@ -1,0 +1,164 @@
+#!/usr/bin/env bash
+# Everything about the C interface. What lacks a tool is SKIPPED, with the reason.
+#   controller-capi/check.sh          all checks
+#   controller-capi/check.sh header   rewrites include/stratum.h
+set -euo pipefail
+cd "$(dirname "$0")/.."
+crate=$PWD/controller-capi
+target=thumbv7em-none-eabihf
+build=${CARGO_TARGET_DIR:-$PWD/target}
+out=$build/capi
+mkdir -p "$out"
+
+step() { printf -- '-- %s\n' "$*"; }
+skipped() { echo "SKIPPED $*"; }
+fail() { echo "$*"; exit 1; }
+
+# The generated text depends on the version.
+cbindgen_version=0.29.4
+cbindgen=
+for candidate in cbindgen "$build/tools/bin/cbindgen"; do
+  if [ "$("$candidate" --version 2>/dev/null)" = "cbindgen $cbindgen_version" ]; then
+    cbindgen=$candidate
+  fi
+done
+if [ -z "$cbindgen" ]; then
+  step "installing cbindgen $cbindgen_version, once: takes minutes"
+  if cargo install cbindgen --version "$cbindgen_version" --locked --quiet \
+    --root "$build/tools" --target-dir "$build/tools/build"; then
+    cbindgen=$build/tools/bin/cbindgen
+  fi
+fi
+header() { "$cbindgen" controller-capi --quiet --config "$crate/cbindgen.toml" --output "$1"; }
+
+if [ "${1:-}" = header ]; then
+  [ -n "$cbindgen" ] || fail "cbindgen $cbindgen_version is not installed and could not be"
+  header "$crate/include/stratum.h"
+  exit
+fi
+
+step "header as generated"
+if [ -n "$cbindgen" ]; then
+  header "$out/stratum.h"
+  diff -u "$crate/include/stratum.h" "$out/stratum.h" ||
+    fail "include/stratum.h is not what the crate says: controller-capi/check.sh header"
+else
+  skipped "header: cbindgen $cbindgen_version is not installed and could not be"
+fi
+
+programs="bare_loop replay errors"
+flags="-std=c11 -Wall -Wextra -Wpedantic -Werror -O2 -I$crate/include"
+cd "$crate/examples/c"
+
+# library PRECISION [cargo arguments]: builds libstratum.a and prints its path.
+library() {
+  local features=
+  [ "$1" = f64 ] || features="--features single"
+  # shellcheck disable=SC2086
+  (cd "$crate/.." && cargo build -p controller-capi --lib --release --quiet \
+    --target-dir "$build/capi-$1" $features "${@:2}")
+}
+
+# expected PRECISION: the replay in Rust.
+expected() {
+  local features=
+  [ "$1" = f64 ] || features="--features single"
+  # shellcheck disable=SC2086
+  (cd "$crate/.." && cargo run -p controller-capi --example replay --release --quiet \
+    --target-dir "$build/capi-$1" $features)
+}
+
+for precision in f64 f32; do
+  expected "$precision" > "$out/rust-$precision"
+done
+echo "replay in Rust: $(tail -n 1 "$out/rust-f64") (f64), $(tail -n 1 "$out/rust-f32") (f32)"
+
+
+# same NAME PRECISION: what a C program printed against the replay in Rust.
+same() {
+  diff "$out/rust-$2" "$out/$1" || fail "$1: torques are not those of Rust"
+  echo "$1: equal to Rust in every bit"
+}
+
+step "host: C programs, both precisions"
+if command -v gcc > /dev/null; then
+  for precision in f64 f32; do
+    library "$precision"
+    archive=$build/capi-$precision/release/libstratum.a
+    for program in $programs; do
+      # shellcheck disable=SC2086
+      gcc $flags "$program.c" board.c board_host.c "$archive" -lpthread -ldl -lm \
+        -o "$out/$program-$precision"
+    done
+    "$out/bare_loop-$precision"
+    "$out/errors-$precision" > "$out/errors.txt" || { cat "$out/errors.txt"; exit 1; }
+    tail -n 1 "$out/errors.txt"
+    "$out/replay-$precision" > "$out/host-$precision"
+    same "host-$precision" "$precision"
+  done
+else
+  skipped "C programs on the host: no gcc"
+fi
+
+step "host: C++"
+if command -v g++ > /dev/null; then
+  library f64
+  g++ -std=c++17 -Wall -Wextra -Werror -I"$crate/include" header_twice.cpp \
+    "$build/capi-f64/release/libstratum.a" -lpthread -ldl -lm -o "$out/header_twice"
+  "$out/header_twice"
+else
+  skipped "header in C++: no g++"
+fi
+
+step "host: memory, by valgrind"
+if command -v valgrind > /dev/null && command -v gcc > /dev/null; then
+  for program in $programs; do
+    valgrind --error-exitcode=9 --leak-check=full --log-file="$out/valgrind.txt" \
+      "$out/$program-f64" > /dev/null || { cat "$out/valgrind.txt"; exit 1; }
+    # The programs allocate nothing themselves.
+    grep -q "total heap usage: 0 allocs" "$out/valgrind.txt" ||
+      { cat "$out/valgrind.txt"; fail "$program: allocates"; }
+  done
+  echo "no error, no allocation"
+else
+  skipped "valgrind of the C programs: no valgrind or no gcc"
+fi
+
+step "target: C programs on an emulated Cortex-M7, both precisions"
+if ! command -v arm-none-eabi-gcc > /dev/null; then
+  skipped "C programs on the target: no arm-none-eabi-gcc"
+elif ! rustup target list --installed 2> /dev/null | grep -qx "$target" &&
+  ! rustup target add "$target"; then
+  skipped "C programs on the target: $target could not be installed"
+else
+  for precision in f64 f32; do
+    library "$precision" --target "$target"
+    archive=$build/capi-$precision/$target/release/libstratum.a
+    for program in $programs; do
+      image=$out/$program-$precision.elf
+      # shellcheck disable=SC2086
+      arm-none-eabi-gcc $flags -ffreestanding -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard \
+        -nostdlib -T qemu.ld -Wl,--gc-sections,-z,noexecstack,--fatal-warnings \
+        "$program.c" board.c board_qemu.c "$archive" -lgcc -o "$image"
+      # Settings, references and cycles cannot panic: the handler is not even linked.
+      # (Texts of numbers are made by Rust's formatting, which has checks of its own.)
+      if [ "$program" != errors ] && arm-none-eabi-nm "$image" | grep -E 'panic|unwind'; then
+        fail "$program: a panic can be reached"
+      fi
+    done
+    arm-none-eabi-size "$out/bare_loop-$precision.elf"
+    if command -v qemu-system-arm > /dev/null; then
+      for program in $programs; do
+        timeout 120 qemu-system-arm -M mps2-an500 -display none -serial null -monitor none \
+          -semihosting-config enable=on,target=native \
+          -kernel "$out/$program-$precision.elf" > "$out/target-$program-$precision" 2>&1 ||
+          { cat "$out/target-$program-$precision"; fail "$program failed on the target"; }
+      done
+      cat "$out/target-bare_loop-$precision"
+      tail -n 1 "$out/target-errors-$precision"
+      same "target-replay-$precision" "$precision"
+    else
+      skipped "run on the target: no qemu-system-arm; linked only"
+    fi
+  done
+fi

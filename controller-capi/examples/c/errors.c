@@ -1,0 +1,286 @@
+/* Every error of the interface, called; ends with 1 where an answer is wrong. */
+#include "board.h"
+#include "stratum.h"
+
+#include <stdint.h>
+
+static StratumController controller, other, blank_controller;
+static StratumState state, blank_state;
+static StratumSettings settings;
+static StratumArm arm;
+static StratumReference reference;
+static StratumStatus status;
+static double q[7] = {0.0, 0.5, 0.0, -1.5, 0.5, 1.0, 0.0}, dq[7], torque[7], bad[7];
+static char text[STRATUM_TEXT_SIZE];
+static _Alignas(8) unsigned char bytes[sizeof(StratumController) + 8];
+static int wrong, expected;
+
+static void expect(const char *what, StratumResult result, StratumResult wanted) {
+    expected++;
+    if (result == wanted) return;
+    wrong++;
+    board_print(what);
+    board_print("\n  answers ");
+    board_print(stratum_error_name(result));
+    board_print(", not ");
+    board_print(stratum_error_name(wanted));
+    board_print("\n");
+}
+#define EXPECT(wanted, call) expect(#call, call, wanted)
+#define CHECK(condition) expect(#condition, (condition) ? STRATUM_OK : 1, STRATUM_OK)
+
+/* A pointer that is aligned for nothing. */
+#define ODD(type) ((type *)(void *)(bytes + 1))
+
+static void fresh(void) {
+    EXPECT(STRATUM_OK, stratum_settings_default(STRATUM_ABI_VERSION, &settings));
+}
+
+/* The settings are refused, by both functions alike and with a text that fits. */
+static void refused(StratumResult wanted) {
+    EXPECT(wanted, stratum_settings_text(&settings, text, sizeof text));
+    EXPECT(wanted, stratum_controller_init(&other, &settings));
+    CHECK(text[0] != 0 && text[sizeof text - 2] == 0);
+    board_print(stratum_error_name(wanted));
+    board_print(": ");
+    board_print(text);
+    board_print("\n");
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_state_init(&blank_state, &other, q));
+    fresh();
+}
+#define REFUSED(wanted, change) do { change; refused(wanted); } while (0)
+
+static void arguments(void) {
+    const double infinite = 1.0 / (double)(dq[0] * dq[0]);
+    for (int i = 0; i < 7; i++) bad[i] = infinite;
+
+    EXPECT(STRATUM_ERROR_ABI, stratum_settings_default(STRATUM_ABI_VERSION + 1, &settings));
+    EXPECT(STRATUM_ERROR_NULL, stratum_settings_default(STRATUM_ABI_VERSION, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED,
+           stratum_settings_default(STRATUM_ABI_VERSION, ODD(StratumSettings)));
+    EXPECT(STRATUM_OK, stratum_arm_preset("lwr_iv", &arm));
+    EXPECT(STRATUM_ERROR_PRESET, stratum_arm_preset("lwr", &arm));
+    EXPECT(STRATUM_ERROR_PRESET, stratum_arm_preset("lwr_iv+", &arm));
+    EXPECT(STRATUM_ERROR_NULL, stratum_arm_preset(0, &arm));
+    EXPECT(STRATUM_ERROR_NULL, stratum_arm_preset("lwr_iv", 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_arm_preset("lwr_iv", ODD(StratumArm)));
+
+    fresh();
+    EXPECT(STRATUM_OK, stratum_settings_text(&settings, text, sizeof text));
+    CHECK(text[0] == 0);
+    EXPECT(STRATUM_ERROR_NULL, stratum_settings_text(0, text, sizeof text));
+    EXPECT(STRATUM_ERROR_NULL, stratum_settings_text(&settings, 0, sizeof text));
+    EXPECT(STRATUM_ERROR_TEXT_SIZE, stratum_settings_text(&settings, text, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED,
+           stratum_settings_text(ODD(StratumSettings), text, sizeof text));
+    EXPECT(STRATUM_ERROR_NULL, stratum_controller_init(0, &settings));
+    EXPECT(STRATUM_ERROR_NULL, stratum_controller_init(&controller, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_controller_init(ODD(StratumController), &settings));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_controller_init(&controller, ODD(StratumSettings)));
+    EXPECT(STRATUM_OK, stratum_controller_init(&controller, &settings));
+
+    EXPECT(STRATUM_ERROR_NULL, stratum_state_init(0, &controller, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_state_init(&state, 0, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_state_init(&state, &controller, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_state_init(ODD(StratumState), &controller, q));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_state_init(&state, ODD(StratumController), q));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_state_init(&state, &controller, ODD(double)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_state_init(&state, &blank_controller, q));
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_state_init(&state, &controller, bad));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_skip(&state)); /* emptied by the errors */
+    EXPECT(STRATUM_OK, stratum_state_init(&state, &controller, q));
+}
+
+static void references(void) {
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_get(0, 1, &reference));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_get(&state, 1, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_get(ODD(StratumState), 1, &reference));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_get(&state, 1, ODD(StratumReference)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_reference_get(&blank_state, 1, &reference));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_reference_get(&state, 0, &reference));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_reference_get(&state, 2, &reference));
+    EXPECT(STRATUM_OK, stratum_reference_get(&state, 1, &reference));
+
+    EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &reference));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_set(0, 1, &reference));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_set(&state, 1, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_set(ODD(StratumState), 1, &reference));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_set(&state, 1, ODD(StratumReference)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_reference_set(&blank_state, 1, &reference));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_reference_set(&state, 0, &reference));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_reference_set(&state, 0xffffffffu, &reference));
+    StratumReference changed = reference;
+    changed.x[1] = bad[0];
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_set(&state, 1, &changed));
+    changed = reference;
+    changed.dx[2] = -bad[0];
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_set(&state, 1, &changed));
+    changed = reference;
+    changed.ddx[0] = bad[0] - bad[0];
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_set(&state, 1, &changed));
+    changed = reference;
+    changed.orientation[3] = bad[0];
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_set(&state, 1, &changed));
+    changed.orientation[3] = 2.0;
+    EXPECT(STRATUM_ERROR_ORIENTATION, stratum_reference_set(&state, 1, &changed));
+
+    EXPECT(STRATUM_OK, stratum_posture_set(&state, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_posture_set(0, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_posture_set(&state, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_posture_set(ODD(StratumState), q));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_posture_set(&state, ODD(double)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_posture_set(&blank_state, q));
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_posture_set(&state, bad));
+
+    EXPECT(STRATUM_OK, stratum_reference_hold(&state, &controller, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_hold(0, &controller, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_hold(&state, 0, q));
+    EXPECT(STRATUM_ERROR_NULL, stratum_reference_hold(&state, &controller, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_hold(ODD(StratumState), &controller, q));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_hold(&state, ODD(StratumController), q));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_reference_hold(&state, &controller, ODD(double)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_reference_hold(&blank_state, &controller, q));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_reference_hold(&state, &blank_controller, q));
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_hold(&state, &controller, bad));
+}
+
+/* A step with an argument error: zero torque. */
+static void no_step(StratumResult wanted, const StratumController *c, StratumState *s,
+                    const double *q_, const double *dq_) {
+    torque[6] = 1.0;
+    EXPECT(wanted, stratum_step(c, s, q_, dq_, 0.002, torque));
+    CHECK(torque[6] == 0.0);
+}
+
+static void steps(void) {
+    no_step(STRATUM_ERROR_NULL, 0, &state, q, dq);
+    no_step(STRATUM_ERROR_NULL, &controller, 0, q, dq);
+    no_step(STRATUM_ERROR_NULL, &controller, &state, 0, dq);
+    no_step(STRATUM_ERROR_NULL, &controller, &state, q, 0);
+    EXPECT(STRATUM_ERROR_NULL, stratum_step(&controller, &state, q, dq, 0.002, 0));
+    no_step(STRATUM_ERROR_MISALIGNED, ODD(StratumController), &state, q, dq);
+    no_step(STRATUM_ERROR_MISALIGNED, &controller, ODD(StratumState), q, dq);
+    no_step(STRATUM_ERROR_MISALIGNED, &controller, &state, ODD(double), dq);
+    no_step(STRATUM_ERROR_MISALIGNED, &controller, &state, q, ODD(double));
+    EXPECT(STRATUM_ERROR_MISALIGNED,
+           stratum_step(&controller, &state, q, dq, 0.002, ODD(double)));
+    no_step(STRATUM_ERROR_UNINITIALISED, &blank_controller, &state, q, dq);
+    no_step(STRATUM_ERROR_UNINITIALISED, &controller, &blank_state, q, dq);
+    fresh();
+    settings.level_count = 2;
+    settings.levels[1].axes = STRATUM_AXIS_X;
+    EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
+    fresh();
+    no_step(STRATUM_ERROR_MISMATCH, &other, &state, q, dq);
+
+    EXPECT(STRATUM_OK, stratum_step(&controller, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_status(&state, &status));
+    CHECK(status.fault == STRATUM_OK && status.saturated == 0 && status.rank == 0);
+    EXPECT(STRATUM_OK, stratum_fault_text(&state, text, sizeof text));
+    CHECK(text[0] == 0);
+    double held = torque[1];
+    EXPECT(STRATUM_FAULT_IMPLAUSIBLE, stratum_step(&controller, &state, bad, dq, 0.002, torque));
+    CHECK(torque[1] > held - 1.0 && torque[1] < held + 1.0); /* the level was at rest */
+    EXPECT(STRATUM_FAULT_IMPLAUSIBLE, stratum_step(&controller, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_status(&state, &status));
+    CHECK(status.fault == STRATUM_FAULT_IMPLAUSIBLE && status.fault_index == 1);
+    EXPECT(STRATUM_OK, stratum_fault_text(&state, text, sizeof text));
+    board_print(text);
+    board_print("\n");
+    char little[6] = "......";
+    EXPECT(STRATUM_OK, stratum_fault_text(&state, little, 5));
+    CHECK(little[3] == text[3] && little[4] == 0 && little[5] == '.');
+    EXPECT(STRATUM_OK, stratum_reset(&state));
+    EXPECT(STRATUM_FAULT_IMPLAUSIBLE, stratum_step(&controller, &state, q, bad, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_reset(&state));
+    EXPECT(STRATUM_FAULT_IMPLAUSIBLE, stratum_step(&controller, &state, q, dq, bad[0], torque));
+    EXPECT(STRATUM_OK, stratum_reset(&state));
+    StratumReference far = reference;
+    far.x[0] = stratum_precision() == 64 ? 1e308 : 3e38; /* finite, but not times 400 */
+    EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &far));
+    EXPECT(STRATUM_FAULT_NON_FINITE_TORQUE,
+           stratum_step(&controller, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &reference));
+    EXPECT(STRATUM_OK, stratum_reset(&state));
+    EXPECT(STRATUM_OK, stratum_step(&controller, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_step(&controller, &state, q, q, 0.002, q)); /* one array */
+    EXPECT(STRATUM_OK, stratum_applied(&state, torque));
+    EXPECT(STRATUM_OK, stratum_skip(&state));
+
+    StratumResult (*const vectors[])(const StratumState *, double *) = {
+        stratum_residual, stratum_gravity, stratum_coriolis};
+    for (int i = 0; i < 3; i++) {
+        EXPECT(STRATUM_OK, vectors[i](&state, torque));
+        EXPECT(STRATUM_ERROR_NULL, vectors[i](0, torque));
+        EXPECT(STRATUM_ERROR_NULL, vectors[i](&state, 0));
+        EXPECT(STRATUM_ERROR_MISALIGNED, vectors[i](ODD(StratumState), torque));
+        EXPECT(STRATUM_ERROR_MISALIGNED, vectors[i](&state, ODD(double)));
+        EXPECT(STRATUM_ERROR_UNINITIALISED, vectors[i](&blank_state, torque));
+    }
+    EXPECT(STRATUM_ERROR_NULL, stratum_status(0, &status));
+    EXPECT(STRATUM_ERROR_NULL, stratum_status(&state, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_status(ODD(StratumState), &status));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_status(&state, ODD(StratumStatus)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_status(&blank_state, &status));
+    EXPECT(STRATUM_ERROR_NULL, stratum_fault_text(0, text, sizeof text));
+    EXPECT(STRATUM_ERROR_NULL, stratum_fault_text(&state, 0, sizeof text));
+    EXPECT(STRATUM_ERROR_TEXT_SIZE, stratum_fault_text(&state, text, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_fault_text(ODD(StratumState), text, sizeof text));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_fault_text(&blank_state, text, sizeof text));
+    EXPECT(STRATUM_ERROR_NULL, stratum_applied(0, torque));
+    EXPECT(STRATUM_ERROR_NULL, stratum_applied(&state, 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_applied(ODD(StratumState), torque));
+    EXPECT(STRATUM_ERROR_MISALIGNED, stratum_applied(&state, ODD(double)));
+    EXPECT(STRATUM_ERROR_UNINITIALISED, stratum_applied(&blank_state, torque));
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_applied(&state, bad));
+    StratumResult (*const plain[])(StratumState *) = {stratum_skip, stratum_reset};
+    for (int i = 0; i < 2; i++) {
+        EXPECT(STRATUM_ERROR_NULL, plain[i](0));
+        EXPECT(STRATUM_ERROR_MISALIGNED, plain[i](ODD(StratumState)));
+        EXPECT(STRATUM_ERROR_UNINITIALISED, plain[i](&blank_state));
+    }
+}
+
+static void configurations(void) {
+    fresh();
+    REFUSED(STRATUM_ERROR_ABI, settings.abi = 0);
+    REFUSED(STRATUM_CONFIG_LEVELS, settings.level_count = 8);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].task = 2);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].axes = 8);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.damping = 0xffffffffu);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.posture = 3);
+    REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 0);
+    REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 3);
+    REFUSED(STRATUM_CONFIG_NO_AXIS, settings.level_count = 2; settings.levels[1].axes = 0);
+    REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 0);
+    REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 8);
+    REFUSED(STRATUM_CONFIG_POINT_OFFSET, settings.levels[0].offset[1] = 11.0);
+    REFUSED(STRATUM_CONFIG_POINT_OFFSET, settings.levels[0].offset[1] = bad[0]);
+    REFUSED(STRATUM_CONFIG_GAIN_VALUE, settings.levels[0].stiffness[2][2] = bad[0]);
+    REFUSED(STRATUM_CONFIG_GAIN_VALUE, settings.null_damping[6][6] = 1e300);
+    REFUSED(STRATUM_CONFIG_CYCLE, settings.cycle_s = 5e-324);
+    REFUSED(STRATUM_CONFIG_GAIN_SYMMETRY, settings.levels[0].damping[0][1] = 1.0);
+    REFUSED(STRATUM_CONFIG_GAIN_SYMMETRY, settings.null_stiffness[4][2] = 1.0);
+    REFUSED(STRATUM_CONFIG_GAIN_DEFINITE, settings.null_stiffness[3][3] = -15.0);
+    REFUSED(STRATUM_CONFIG_OBSERVER_GAIN, settings.observer_gain[6] = 0.0);
+    REFUSED(STRATUM_CONFIG_CYCLE, settings.cycle_s = 0.05);
+    REFUSED(STRATUM_CONFIG_DEAD_CYCLES, settings.dead_cycles = 9);
+    REFUSED(STRATUM_CONFIG_DEAD_CYCLES, settings.dead_cycles = 256);
+    REFUSED(STRATUM_CONFIG_INERTIA_DAMPING,
+            settings.damping = STRATUM_DAMPING_INERTIA; settings.null_damping_rate = -1.0);
+    REFUSED(STRATUM_CONFIG_DAMPING, settings.null_damping[6][6] = 1.0);
+    REFUSED(STRATUM_CONFIG_ARM_NON_FINITE, settings.arm.links[2].com[0] = bad[0]);
+    REFUSED(STRATUM_CONFIG_ARM_NOT_POSITIVE, settings.arm.links[6].torque_limit = 0.0);
+    REFUSED(STRATUM_CONFIG_ARM_INERTIA, settings.arm.links[4].inertia[0] = 10.0);
+}
+
+int main(void) {
+    arguments();
+    references();
+    steps();
+    configurations();
+    CHECK(stratum_abi_version() == STRATUM_ABI_VERSION);
+    CHECK(stratum_error_name(-1)[0] == 'u' && stratum_error_text(12345)[0] == 'n');
+    board_print(wrong ? "errors: some answers are wrong\n" : "errors: all answers are right\n");
+    return wrong != 0;
+}

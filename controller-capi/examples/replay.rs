@@ -1,0 +1,110 @@
+//! The sequence of `c/replay.c` through the core in Rust: the same lines.
+
+use controller_core::config::ControllerConfig;
+use controller_core::controller::{Controller, ControllerState};
+use controller_core::joint::{JointVector, Vector3, diagonal};
+use controller_core::kinematics::LinkPoint;
+use controller_core::law::{NullDamping, NullSpace, Posture};
+use controller_core::measurement::Measurement;
+use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::real::Real;
+use controller_core::task::{Axes, Task};
+use std::fmt::Write;
+use stratum::Scalar;
+
+const CYCLES: u32 = 5000;
+const CENTRE: [f64; 7] = [0.0, 0.625, 0.0, -1.375, 0.375, 1.0, 0.0];
+
+/// Triangle wave between -0x4000 and 0x3fff.
+fn wave(phase: u32) -> f64 {
+    let phase = (phase & 0xffff) as i32;
+    f64::from(phase.min(0xffff - phase) - 0x4000)
+}
+
+fn measure(cycle: u32) -> ([f64; 7], [f64; 7]) {
+    let mut joints = ([0.0; 7], [0.0; 7]);
+    for (i, centre) in CENTRE.into_iter().enumerate() {
+        let step = i as u32 + 2;
+        let phase = cycle * step + 0x1357 * i as u32;
+        let speed = f64::from(step) / 64.0;
+        joints.0[i] = centre + wave(phase) / 32768.0;
+        joints.1[i] = if phase & 0xffff < 0x8000 {
+            speed
+        } else {
+            -speed
+        };
+    }
+    joints
+}
+
+/// FNV-1a over bytes.
+fn hash_bits(hash: u64, bits: u64) -> u64 {
+    bits.to_le_bytes().into_iter().fold(hash, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+fn replay() -> Result<String, Box<dyn std::error::Error>> {
+    let vector = |values: [f64; 7]| JointVector::from(values.map(Scalar::from_f64));
+    let model = ArmModel::<Scalar>::new(&LWR_IV)?;
+    let point = |link, z| LinkPoint {
+        link,
+        offset: Vector3::from([0.0, 0.0, z].map(Scalar::from_f64)),
+    };
+    let flange = Task::uniform(point(7, LWR_IV.flange), Axes::XYZ, 400.0, 40.0);
+    let elbow = Task::uniform(point(3, 0.0), Axes::XY, 400.0, 40.0);
+    let config = ControllerConfig {
+        tasks: [flange, elbow].into_iter().collect(),
+        null_space: NullSpace {
+            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
+            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
+            posture: Posture::Constant,
+        },
+        observer_gain: vector([50.0; 7]),
+        cycle_s: Scalar::from_f64(0.002),
+        dead_cycles: 0,
+    };
+    let controller = Controller::new(&model, &config)?;
+    let mut state = ControllerState::new();
+    let mut hash = 0xcbf2_9ce4_8422_2325;
+    let mut saturated = 0;
+    let bits = Scalar::default().to_bits().count_zeros();
+    let mut lines = format!("stratum {} f{bits}\n", env!("CARGO_PKG_VERSION"));
+    for cycle in 0..CYCLES {
+        let (q, dq) = measure(cycle);
+        let mut reference = controller.rest(&vector(q));
+        let z = &mut reference.tasks[0].x.z;
+        *z = Scalar::from_f64(z.to_f64() + wave(64 * cycle) / 2_097_152.0);
+        reference.posture = vector(CENTRE);
+        if cycle == 3010 {
+            state.reset();
+        }
+        let interval_s = if cycle == 3000 { -1.0 } else { 1.0 / 512.0 };
+        let measurement = Measurement {
+            q: vector(q),
+            dq: vector(dq),
+            interval_s: Scalar::from_f64(interval_s),
+        };
+        let step = controller.step(&mut state, &measurement, &reference);
+        state.applied(&step.gravity);
+        let fault = step.status.fault.map_or(0, |fault| fault.kind as u64);
+        saturated += u32::from(step.status.saturated.any());
+        let numbers = step.torque.iter().chain(&step.residual);
+        let numbers = numbers.map(|number| number.to_f64().to_bits());
+        hash = std::iter::once(fault).chain(numbers).fold(hash, hash_bits);
+        if cycle % 500 < 2 {
+            write!(lines, "cycle {cycle}")?;
+            for torque in &step.torque {
+                write!(lines, " {:016x}", torque.to_f64().to_bits())?;
+            }
+            lines.push('\n');
+        }
+    }
+    write!(lines, "saturated cycles {saturated}\nhash {hash:016x}\n")?;
+    Ok(lines)
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    print!("{}", replay()?);
+    Ok(())
+}

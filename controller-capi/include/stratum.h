@@ -1,0 +1,442 @@
+/* Stratum: strict-priority torque control of 7-joint arms. Link with libstratum.a.
+ *
+ * Generated from controller-capi by `controller-capi/check.sh header`; changed there.
+ *
+ * All storage is the caller's; nothing is allocated. Every function answers a
+ * code and checks its pointers for null and alignment, and storage for having been
+ * initialised. What it cannot check: other pointers point to objects of their
+ * type, joint arrays have 7 entries, and no interrupt handler or thread uses a
+ * storage during a call that changes it. A controller may be read by several at once.
+ * Storage that was never initialised is recognised by its first 8 bytes: static
+ * storage always. Joints, levels and links count from 1; SI units.
+ */
+
+#ifndef STRATUM_H
+#define STRATUM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// Storage of a controller in words of 8 bytes.
+#define STRATUM_CONTROLLER_WORDS 640
+
+// Storage of a state in words of 8 bytes.
+#define STRATUM_STATE_WORDS 320
+
+// sizeof(StratumController).
+#define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)
+
+// Alignment of a StratumController.
+#define STRATUM_CONTROLLER_ALIGN 8
+
+// sizeof(StratumState).
+#define STRATUM_STATE_SIZE (STRATUM_STATE_WORDS * 8)
+
+// Alignment of a StratumState.
+#define STRATUM_STATE_ALIGN 8
+
+// A text buffer of this size holds every text.
+#define STRATUM_TEXT_SIZE 512
+
+// sizeof(StratumStatus).
+#define STRATUM_STATUS_SIZE 40
+
+// The version of the interface: numbers, structs and functions of this header.
+#define STRATUM_ABI_VERSION 1
+
+// Joints of an arm.
+#define STRATUM_JOINTS 7
+
+// Most levels.
+#define STRATUM_LEVELS 7
+
+// StratumLevel.task: the position of the point.
+#define STRATUM_TASK_POSITION 0
+
+// StratumLevel.task: the orientation of the link.
+#define STRATUM_TASK_ORIENTATION 1
+
+// StratumLevel.axes: along x (about x for an orientation).
+#define STRATUM_AXIS_X 1
+
+// StratumLevel.axes: along y.
+#define STRATUM_AXIS_Y 2
+
+// StratumLevel.axes: along z.
+#define STRATUM_AXIS_Z 4
+
+// StratumSettings.damping: the constant matrix null_damping.
+#define STRATUM_DAMPING_JOINT 0
+
+// StratumSettings.damping: null_damping_rate times the mass matrix.
+#define STRATUM_DAMPING_INERTIA 1
+
+// StratumSettings.posture: the posture that was set.
+#define STRATUM_POSTURE_CONSTANT 0
+
+// StratumSettings.posture: the integral of the task motion, with coupling.
+#define STRATUM_POSTURE_INTEGRAL_COUPLED 1
+
+// StratumSettings.posture: the integral of the task motion, without coupling.
+#define STRATUM_POSTURE_INTEGRAL_UNCOUPLED 2
+
+// sizeof(StratumSettings).
+#define STRATUM_SETTINGS_SIZE 3104
+
+// sizeof(StratumReference).
+#define STRATUM_REFERENCE_SIZE 104
+
+// What a function answers: STRATUM_OK, an argument error (1 to 31), a latched
+// fault (32 to 95) or a configuration error (from 128). The numbers are stable.
+typedef int32_t StratumResult;
+
+// Tables of one link and of the joint that moves it, by the standard
+// Denavit-Hartenberg convention.
+typedef struct StratumLink {
+  // Length along the new x axis, m.
+  double a;
+  // Twist about the new x axis, rad.
+  double alpha;
+  // Offset along the joint axis, m.
+  double d;
+  // Mass, kg.
+  double mass;
+  // Centre of mass in the link's frame, m.
+  double com[3];
+  // Inertia about the centre of mass, axes of the link's frame, kg m2:
+  // Ixx Ixy Ixz Iyy Iyz Izz.
+  double inertia[6];
+  // Largest |q|, rad.
+  double position_limit;
+  // Largest |dq| of the data sheet, rad/s.
+  double speed_limit;
+  // Largest |torque|, Nm.
+  double torque_limit;
+} StratumLink;
+
+// Tables of an arm.
+typedef struct StratumArm {
+  // Height of frame 0 above the mounting plate, m.
+  double base_height;
+  // Distance of the flange from the origin of frame 7 along z7, m.
+  double flange;
+  // Gravitational acceleration, base-plate axes, m/s2.
+  double gravity[3];
+  // Links, base to flange.
+  struct StratumLink links[STRATUM_JOINTS];
+} StratumArm;
+
+// One priority level.
+typedef struct StratumLevel {
+  // STRATUM_TASK_POSITION or STRATUM_TASK_ORIENTATION.
+  uint32_t task;
+  // Link that carries the point, 1 to 7.
+  uint32_t link;
+  // The point in the link's frame, m.
+  double offset[3];
+  // Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
+  uint32_t axes;
+  // Always 0: completes the struct to whole words.
+  uint32_t reserved;
+  // Stiffness of the error, 1/s2: acts on acceleration.
+  double stiffness[3][3];
+  // Damping of the error, 1/s.
+  double damping[3][3];
+} StratumLevel;
+
+// Everything a controller is made of.
+typedef struct StratumSettings {
+  // Set by stratum_settings_default; not to be changed.
+  uint32_t abi;
+  // Levels in use, 1 to 7; together at most 7 axes.
+  uint32_t level_count;
+  // The arm with its limits.
+  struct StratumArm arm;
+  // Levels, highest priority first.
+  struct StratumLevel levels[STRATUM_LEVELS];
+  // Null-space stiffness, symmetric positive definite, Nm/rad.
+  double null_stiffness[STRATUM_JOINTS][STRATUM_JOINTS];
+  // Null-space damping, symmetric positive definite, Nms/rad.
+  double null_damping[STRATUM_JOINTS][STRATUM_JOINTS];
+  // Rate of STRATUM_DAMPING_INERTIA, 1/s.
+  double null_damping_rate;
+  // STRATUM_DAMPING_JOINT or STRATUM_DAMPING_INERTIA.
+  uint32_t damping;
+  // STRATUM_POSTURE_CONSTANT or one of the integrals.
+  uint32_t posture;
+  // Bandwidth of the external-torque estimate, 1/s.
+  double observer_gain[STRATUM_JOINTS];
+  // Nominal cycle, s.
+  double cycle_s;
+  // Cycles between a measurement and the moment its torque acts.
+  uint32_t dead_cycles;
+  // Always 0.
+  uint32_t reserved;
+} StratumSettings;
+
+// Storage of the immutable part: arm, levels, gains, limits. One controller can
+// drive several states. It may be static, on a stack or copied.
+typedef struct StratumController {
+  // Not to be read or written.
+  uint64_t opaque[STRATUM_CONTROLLER_WORDS];
+} StratumController;
+
+// Storage of what changes from cycle to cycle, with the references.
+typedef struct StratumState {
+  // Not to be read or written.
+  uint64_t opaque[STRATUM_STATE_WORDS];
+} StratumState;
+
+// Desired motion of one level, base-plate axes.
+typedef struct StratumReference {
+  // Position, m.
+  double x[3];
+  // Orientation quaternion w x y z, norm 0.5 to 2; 1 0 0 0 for a position.
+  double orientation[4];
+  // Velocity, m/s, or angular velocity, rad/s.
+  double dx[3];
+  // Acceleration, m/s2, or angular acceleration, rad/s2.
+  double ddx[3];
+} StratumReference;
+
+// What limited or degraded the last cycle.
+typedef struct StratumStatus {
+  // The latched fault (STRATUM_FAULT_...), STRATUM_OK if there is none.
+  StratumResult fault;
+  // Joint or level of the fault, counted from 1; 0 where there is only one.
+  uint32_t fault_index;
+  // The value that made the fault.
+  double fault_value;
+  // Smallest value allowed.
+  double fault_min;
+  // Largest value allowed.
+  double fault_max;
+  // Joints whose torque was cut to its limit: bit 0 is joint 1.
+  uint32_t saturated;
+  // Task rows without acceleration, because the rows above them leave no
+  // motion for them: bit 0 is the first row of level 1.
+  uint32_t rank;
+} StratumStatus;
+
+// Done.
+#define STRATUM_OK 0
+
+// A pointer is null.
+#define STRATUM_ERROR_NULL 1
+
+// A pointer is not aligned for what it points to.
+#define STRATUM_ERROR_MISALIGNED 2
+
+// The storage holds no controller, or no state, of this library.
+#define STRATUM_ERROR_UNINITIALISED 3
+
+// A number is infinite or NaN, or too large for the precision of the library.
+#define STRATUM_ERROR_NON_FINITE 4
+
+// The controller has no such level; levels count from 1.
+#define STRATUM_ERROR_LEVEL 5
+
+// The norm of a desired orientation is outside 0.5 to 2.
+#define STRATUM_ERROR_ORIENTATION 6
+
+// State and controller differ in their number of levels.
+#define STRATUM_ERROR_MISMATCH 7
+
+// Header and library are of different versions of the interface.
+#define STRATUM_ERROR_ABI 8
+
+// No arm of this name is built in.
+#define STRATUM_ERROR_PRESET 9
+
+// A text buffer of size 0.
+#define STRATUM_ERROR_TEXT_SIZE 10
+
+// Fault: a measurement or reference that cannot be true.
+#define STRATUM_FAULT_IMPLAUSIBLE 32
+
+// Fault: the law gave a torque that is not finite.
+#define STRATUM_FAULT_NON_FINITE_TORQUE 33
+
+// Settings: another error of the configuration, see stratum_settings_text.
+#define STRATUM_CONFIG_OTHER 128
+
+// Settings: level_count is above 7.
+#define STRATUM_CONFIG_LEVELS 129
+
+// Settings: a choice (task, axes, damping, posture) that does not exist.
+#define STRATUM_CONFIG_CHOICE 130
+
+// Settings: the levels have no rows, or more than 7 together.
+#define STRATUM_CONFIG_ROWS 131
+
+// Settings: a level without an axis.
+#define STRATUM_CONFIG_NO_AXIS 132
+
+// Settings: a point on a link that does not exist.
+#define STRATUM_CONFIG_POINT_LINK 133
+
+// Settings: a point offset that is not finite, or too far away.
+#define STRATUM_CONFIG_POINT_OFFSET 134
+
+// Settings: an entry of a gain matrix is not finite, or too large.
+#define STRATUM_CONFIG_GAIN_VALUE 135
+
+// Settings: a gain matrix is not symmetric.
+#define STRATUM_CONFIG_GAIN_SYMMETRY 136
+
+// Settings: a gain matrix is not positive definite.
+#define STRATUM_CONFIG_GAIN_DEFINITE 137
+
+// Settings: an observer gain is not above 0, or not finite.
+#define STRATUM_CONFIG_OBSERVER_GAIN 138
+
+// Settings: the nominal cycle is outside its range.
+#define STRATUM_CONFIG_CYCLE 139
+
+// Settings: too many cycles of dead time.
+#define STRATUM_CONFIG_DEAD_CYCLES 140
+
+// Settings: the rate of an inertia-shaped damping is not above 0, or not finite.
+#define STRATUM_CONFIG_INERTIA_DAMPING 141
+
+// Settings: the null-space damping is too strong for the cycle.
+#define STRATUM_CONFIG_DAMPING 142
+
+// Arm: a parameter is not finite.
+#define STRATUM_CONFIG_ARM_NON_FINITE 160
+
+// Arm: a parameter that must be above 0 is not.
+#define STRATUM_CONFIG_ARM_NOT_POSITIVE 161
+
+// Arm: an inertia that no body can have.
+#define STRATUM_CONFIG_ARM_INERTIA 162
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Version of the library, such as "0.1.0".
+const char *stratum_version(void);
+
+// Version of the library's interface: STRATUM_ABI_VERSION of its header.
+uint32_t stratum_abi_version(void);
+
+// Bits of the numbers the library computes in: 64 or 32.
+uint32_t stratum_precision(void);
+
+// Name of a code, such as "STRATUM_ERROR_NULL"; never null.
+const char *stratum_error_name(StratumResult result);
+
+// Text of a code; never null.
+const char *stratum_error_text(StratumResult result);
+
+// Tables of a built-in arm: "lwr_iv". To start from, or to change one's limits.
+StratumResult stratum_arm_preset(const char *name, struct StratumArm *arm);
+
+// Settings to start from: the LWR IV+, its flange in x, y, z as the one level (all
+// seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
+// STRATUM_ABI_VERSION of the header that the caller was compiled with.
+StratumResult stratum_settings_default(uint32_t abi, struct StratumSettings *settings);
+
+// Says of settings what stratum_controller_init says, and why: thing, value and
+// what is allowed, as a text of at most size - 1 characters; empty for good settings.
+StratumResult stratum_settings_text(const struct StratumSettings *settings,
+                                    char *text,
+                                    size_t size);
+
+// Validates the settings and makes a controller of them. After an error the
+// storage holds no controller.
+StratumResult stratum_controller_init(struct StratumController *controller,
+                                      const struct StratumSettings *settings);
+
+// Before the first cycle: nothing observed, no fault; the references keep every
+// level and the null space at the posture `q` in rad.
+StratumResult stratum_state_init(struct StratumState *state,
+                                 const struct StratumController *controller,
+                                 const double *q);
+
+// Sets all references to rest where the posture `q` in rad puts them.
+StratumResult stratum_reference_hold(struct StratumState *state,
+                                     const struct StratumController *controller,
+                                     const double *q);
+
+// Sets the reference of a level, from the next step on.
+StratumResult stratum_reference_set(struct StratumState *state,
+                                    uint32_t level,
+                                    const struct StratumReference *reference);
+
+// The reference of a level as it is set: after stratum_state_init where the level
+// is, to start a motion from.
+StratumResult stratum_reference_get(const struct StratumState *state,
+                                    uint32_t level,
+                                    struct StratumReference *reference);
+
+// Sets the posture in rad towards which the null space is compliant.
+StratumResult stratum_posture_set(struct StratumState *state, const double *posture);
+
+// One cycle: posture in rad, speeds in rad/s, time since the last measurement in s
+// (the nominal cycle at first); torque in Nm, always finite and within limits.
+// A measurement that cannot be true latches a fault: its number is answered, the
+// torque is the gravity torque of the last plausible posture, until
+// stratum_reset. On an argument error the torque is zero and the state is as
+// before. q, dq and torque may be the same array.
+StratumResult stratum_step(const struct StratumController *controller,
+                           struct StratumState *state,
+                           const double *q,
+                           const double *dq,
+                           double interval_s,
+                           double *torque);
+
+// What limited or degraded the last cycle.
+StratumResult stratum_status(const struct StratumState *state,
+                             struct StratumStatus *status);
+
+// The latched fault as a text of at most size - 1 characters: quantity, value, what
+// is allowed; empty if there is none.
+StratumResult stratum_fault_text(const struct StratumState *state,
+                                 char *text,
+                                 size_t size);
+
+// Residual of the last cycle in Nm, tends to minus the torque that the arm exerts
+// on its environment; zero while a fault is latched.
+StratumResult stratum_residual(const struct StratumState *state, double *residual);
+
+// Gravity torque of the last cycle in Nm, contained in the torque: to be taken off
+// for a robot that adds gravity itself.
+StratumResult stratum_gravity(const struct StratumState *state, double *gravity);
+
+// Coriolis and centrifugal torque of the last cycle in Nm, contained in the torque.
+StratumResult stratum_coriolis(const struct StratumState *state, double *coriolis);
+
+// Tells the observer that `torque` in Nm has acted since the last cycle instead of
+// the one it assumes: for links that round, scale or lose torques.
+StratumResult stratum_applied(struct StratumState *state, const double *torque);
+
+// The next cycle comes after a gap that is too long to be an interval.
+StratumResult stratum_skip(struct StratumState *state);
+
+// Clears a latched fault; the observer starts anew, the references stay.
+StratumResult stratum_reset(struct StratumState *state);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* STRATUM_H */
+
+#ifdef __cplusplus
+#define STRATUM_CHECK(condition) static_assert(condition, #condition)
+#define STRATUM_ALIGNOF alignof
+#else
+#define STRATUM_CHECK(condition) _Static_assert(condition, #condition)
+#define STRATUM_ALIGNOF _Alignof
+#endif
+STRATUM_CHECK(sizeof(StratumController) == STRATUM_CONTROLLER_SIZE);
+STRATUM_CHECK(STRATUM_ALIGNOF(StratumController) == STRATUM_CONTROLLER_ALIGN);
+STRATUM_CHECK(sizeof(StratumState) == STRATUM_STATE_SIZE);
+STRATUM_CHECK(STRATUM_ALIGNOF(StratumState) == STRATUM_STATE_ALIGN);
+STRATUM_CHECK(sizeof(StratumSettings) == STRATUM_SETTINGS_SIZE);
+STRATUM_CHECK(sizeof(StratumReference) == STRATUM_REFERENCE_SIZE);
+STRATUM_CHECK(sizeof(StratumStatus) == STRATUM_STATUS_SIZE);
+#undef STRATUM_CHECK
+#undef STRATUM_ALIGNOF

@@ -1,0 +1,216 @@
+//! Every access through a pointer of the caller, and nothing else.
+//!
+//! All functions check null and alignment. What they cannot check is the
+//! contract of the header: a pointer that is neither null nor misaligned points
+//! to an object of its type, and no other thread or interrupt handler uses this
+//! object during the call.
+
+use core::ffi::{CStr, c_char};
+use core::fmt::{self, Write};
+use core::mem::MaybeUninit;
+use core::slice;
+
+use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::measurement::Reference;
+
+use crate::codes::{
+    STRATUM_ERROR_MISALIGNED, STRATUM_ERROR_NULL, STRATUM_ERROR_TEXT_SIZE,
+    STRATUM_ERROR_UNINITIALISED, StratumResult,
+};
+use crate::{Scalar, StratumController, StratumState};
+
+/// A state with what it was last told and what it last answered.
+pub(crate) struct Held {
+    pub state: ControllerState<Scalar>,
+    pub reference: Reference<Scalar>,
+    pub step: Step<Scalar>,
+}
+
+/// What lies in a storage: a word that says so, then the content.
+#[repr(C)]
+pub(crate) struct Slot<T> {
+    magic: u64,
+    content: MaybeUninit<T>,
+}
+
+/// A storage of the header and what it holds.
+pub(crate) trait Storage: Sized {
+    type Content;
+    /// Distinct per type, precision and version of the interface.
+    const MAGIC: u64;
+}
+
+/// Lowest byte: version of the interface; next: bytes of the scalar.
+const KIND: u64 = crate::STRATUM_ABI_VERSION as u64 | (size_of::<Scalar>() as u64) << 8;
+
+impl Storage for StratumController {
+    type Content = Controller<Scalar>;
+    const MAGIC: u64 = 0x5374_7261_436f_0000 | KIND;
+}
+
+impl Storage for StratumState {
+    type Content = Held;
+    const MAGIC: u64 = 0x5374_7261_5374_0000 | KIND;
+}
+
+/// A slot fits into its storage, or this does not compile.
+const fn fits<S: Storage>() -> bool {
+    size_of::<Slot<S::Content>>() <= size_of::<S>()
+        && align_of::<Slot<S::Content>>() <= align_of::<S>()
+}
+const _: () = assert!(fits::<StratumController>(), "STRATUM_CONTROLLER_WORDS");
+const _: () = assert!(fits::<StratumState>(), "STRATUM_STATE_WORDS");
+
+fn check<T>(pointer: *const T) -> Result<(), StratumResult> {
+    if pointer.is_null() {
+        Err(STRATUM_ERROR_NULL)
+    } else if pointer.is_aligned() {
+        Ok(())
+    } else {
+        Err(STRATUM_ERROR_MISALIGNED)
+    }
+}
+
+/// An argument that is read. Only for types of which every bit pattern is valid.
+pub(crate) unsafe fn get<'a, T: Copy>(pointer: *const T) -> Result<&'a T, StratumResult> {
+    check(pointer)?;
+    // SAFETY: not null, aligned; the caller's contract is the rest.
+    Ok(unsafe { &*pointer })
+}
+
+/// An array that is read, by value: it may be the one that is written later.
+pub(crate) unsafe fn array<const N: usize>(pointer: *const f64) -> Result<[f64; N], StratumResult> {
+    // SAFETY: an array of f64 is aligned as one; the caller's contract is the rest.
+    unsafe { get(pointer.cast::<[f64; N]>()) }.copied()
+}
+
+/// A result that is written.
+pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T) -> Result<(), StratumResult> {
+    check(pointer)?;
+    // SAFETY: not null, aligned; the caller's contract is the rest.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Fills a storage, or empties it on a refusal.
+pub(crate) unsafe fn fill<S: Storage, E>(
+    storage: *mut S,
+    content: impl FnOnce() -> Result<S::Content, E>,
+) -> Result<Result<(), E>, StratumResult> {
+    check(storage)?;
+    let slot = storage.cast::<Slot<S::Content>>();
+    // SAFETY: not null and aligned for the storage, hence large and aligned
+    // enough for the slot (`fits`); the fields are written, never dropped.
+    unsafe {
+        (&raw mut (*slot).magic).write(0);
+        match content() {
+            Ok(content) => {
+                (&raw mut (*slot).content).write(MaybeUninit::new(content));
+                (&raw mut (*slot).magic).write(S::MAGIC);
+                Ok(Ok(()))
+            }
+            Err(error) => Ok(Err(error)),
+        }
+    }
+}
+
+/// What a storage holds.
+pub(crate) unsafe fn held<'a, S: Storage>(
+    storage: *const S,
+) -> Result<&'a S::Content, StratumResult> {
+    check(storage)?;
+    let slot = storage.cast::<Slot<S::Content>>();
+    // SAFETY: as in `fill`; the magic word is read first, and with it `fill` has
+    // written the content.
+    unsafe {
+        if (&raw const (*slot).magic).read() == S::MAGIC {
+            Ok((*slot).content.assume_init_ref())
+        } else {
+            Err(STRATUM_ERROR_UNINITIALISED)
+        }
+    }
+}
+
+/// What a storage holds, to change it.
+pub(crate) unsafe fn held_mut<'a, S: Storage>(
+    storage: *mut S,
+) -> Result<&'a mut S::Content, StratumResult> {
+    check(storage)?;
+    let slot = storage.cast::<Slot<S::Content>>();
+    // SAFETY: as in `held`; nobody else uses the storage during the call.
+    unsafe {
+        if (&raw const (*slot).magic).read() == S::MAGIC {
+            Ok((*slot).content.assume_init_mut())
+        } else {
+            Err(STRATUM_ERROR_UNINITIALISED)
+        }
+    }
+}
+
+/// Whether a C string is `expected`; reads no further than the first difference.
+pub(crate) unsafe fn is_name(name: *const c_char, expected: &CStr) -> Result<bool, StratumResult> {
+    check(name)?;
+    for (i, &byte) in expected.to_bytes_with_nul().iter().enumerate() {
+        // SAFETY: all bytes before were equal and none of them was the end.
+        if unsafe { name.add(i).read() }.cast_unsigned_byte() != byte {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// `c_char` is signed on some targets only.
+trait Byte {
+    fn cast_unsigned_byte(self) -> u8;
+}
+
+impl Byte for c_char {
+    #[allow(clippy::unnecessary_cast)] // not where c_char is i8
+    fn cast_unsigned_byte(self) -> u8 {
+        self as u8
+    }
+}
+
+/// Writes a text, cut to `size` bytes and always ended by a zero.
+pub(crate) unsafe fn write_text(
+    pointer: *mut c_char,
+    size: usize,
+    text: impl fmt::Display,
+) -> Result<(), StratumResult> {
+    check(pointer)?;
+    if size == 0 {
+        return Err(STRATUM_ERROR_TEXT_SIZE);
+    }
+    // SAFETY: not null; by the caller's contract `size` bytes may be written.
+    // They are, before a slice of them is made.
+    let bytes = unsafe {
+        pointer.write_bytes(0, size);
+        slice::from_raw_parts_mut(pointer.cast::<u8>(), size)
+    };
+    let mut buffer = Text {
+        // The last byte stays the end.
+        free: bytes.split_last_mut().map_or(&mut [], |(_, free)| free),
+    };
+    // Fails only where `text` does: the buffer cuts silently.
+    let _ = write!(buffer, "{text}");
+    Ok(())
+}
+
+/// What is left of a buffer.
+struct Text<'a> {
+    free: &'a mut [u8],
+}
+
+impl Write for Text<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let count = text.len().min(self.free.len());
+        let (to, free) = core::mem::take(&mut self.free)
+            .split_at_mut_checked(count)
+            .unwrap_or_default();
+        for (to, from) in to.iter_mut().zip(text.bytes()) {
+            *to = from;
+        }
+        self.free = free;
+        Ok(())
+    }
+}

@@ -1,0 +1,510 @@
+//! The C interface of the core: `include/stratum.h` and `libstratum.a`.
+//!
+//! The caller owns all storage, opaque and of constant size; nothing is
+//! allocated, every function is total: it answers a code and never panics. The
+//! header is generated from this crate by `controller-capi/check.sh header`.
+//!
+//! Numbers cross the border as `double` whatever the library computes in; with
+//! the feature `single` it computes in `f32`.
+
+#![cfg_attr(target_os = "none", no_std)]
+// The contract of all pointers is one: `border`.
+#![allow(clippy::missing_safety_doc)]
+
+use core::ffi::{CStr, c_char};
+
+use controller_core::controller::{ControllerState, Step};
+use controller_core::fault::Status;
+use controller_core::joint::zeros;
+use controller_core::measurement::Measurement;
+use controller_core::real::Real;
+
+mod border;
+mod codes;
+mod settings;
+
+pub use codes::*;
+pub use settings::*;
+
+use border::Held;
+
+/// What the library computes in.
+#[cfg(not(feature = "single"))]
+pub type Scalar = f64;
+/// What the library computes in.
+#[cfg(feature = "single")]
+pub type Scalar = f32;
+
+/// Storage of a controller in words of 8 bytes.
+pub const STRATUM_CONTROLLER_WORDS: usize = 640;
+/// Storage of a state in words of 8 bytes.
+pub const STRATUM_STATE_WORDS: usize = 320;
+/// sizeof(StratumController).
+pub const STRATUM_CONTROLLER_SIZE: usize = STRATUM_CONTROLLER_WORDS * 8;
+/// Alignment of a StratumController.
+pub const STRATUM_CONTROLLER_ALIGN: usize = 8;
+/// sizeof(StratumState).
+pub const STRATUM_STATE_SIZE: usize = STRATUM_STATE_WORDS * 8;
+/// Alignment of a StratumState.
+pub const STRATUM_STATE_ALIGN: usize = 8;
+/// A text buffer of this size holds every text.
+pub const STRATUM_TEXT_SIZE: usize = 512;
+
+const _: () = assert!(size_of::<StratumController>() == STRATUM_CONTROLLER_SIZE);
+const _: () = assert!(align_of::<StratumController>() == STRATUM_CONTROLLER_ALIGN);
+const _: () = assert!(size_of::<StratumState>() == STRATUM_STATE_SIZE);
+const _: () = assert!(align_of::<StratumState>() == STRATUM_STATE_ALIGN);
+
+/// Storage of the immutable part: arm, levels, gains, limits. One controller can
+/// drive several states. It may be static, on a stack or copied.
+#[repr(C)]
+pub struct StratumController {
+    /// Not to be read or written.
+    pub opaque: [u64; STRATUM_CONTROLLER_WORDS],
+}
+
+/// Storage of what changes from cycle to cycle, with the references.
+#[repr(C)]
+pub struct StratumState {
+    /// Not to be read or written.
+    pub opaque: [u64; STRATUM_STATE_WORDS],
+}
+
+/// What limited or degraded the last cycle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StratumStatus {
+    /// The latched fault (STRATUM_FAULT_...), STRATUM_OK if there is none.
+    pub fault: StratumResult,
+    /// Joint or level of the fault, counted from 1; 0 where there is only one.
+    pub fault_index: u32,
+    /// The value that made the fault.
+    pub fault_value: f64,
+    /// Smallest value allowed.
+    pub fault_min: f64,
+    /// Largest value allowed.
+    pub fault_max: f64,
+    /// Joints whose torque was cut to its limit: bit 0 is joint 1.
+    pub saturated: u32,
+    /// Task rows without acceleration, because the rows above them leave no
+    /// motion for them: bit 0 is the first row of level 1.
+    pub rank: u32,
+}
+
+/// sizeof(StratumStatus).
+pub const STRATUM_STATUS_SIZE: usize = 40;
+const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);
+
+fn code(result: Result<(), StratumResult>) -> StratumResult {
+    result.err().unwrap_or(STRATUM_OK)
+}
+
+fn finite<const N: usize>(values: [f64; N]) -> Result<[Scalar; N], StratumResult> {
+    let values = values.map(Scalar::from_f64);
+    if values.iter().all(|value| value.finite()) {
+        Ok(values)
+    } else {
+        Err(STRATUM_ERROR_NON_FINITE)
+    }
+}
+
+const VERSION: &CStr =
+    match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+        Ok(version) => version,
+        Err(_) => c"",
+    };
+
+/// Version of the library, such as "0.1.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn stratum_version() -> *const c_char {
+    VERSION.as_ptr()
+}
+
+/// Version of the library's interface: STRATUM_ABI_VERSION of its header.
+#[unsafe(no_mangle)]
+pub extern "C" fn stratum_abi_version() -> u32 {
+    STRATUM_ABI_VERSION
+}
+
+/// Bits of the numbers the library computes in: 64 or 32.
+#[unsafe(no_mangle)]
+pub extern "C" fn stratum_precision() -> u32 {
+    Scalar::default().to_bits().count_zeros()
+}
+
+/// Name of a code, such as "STRATUM_ERROR_NULL"; never null.
+#[unsafe(no_mangle)]
+pub extern "C" fn stratum_error_name(result: StratumResult) -> *const c_char {
+    codes::name(result).as_ptr()
+}
+
+/// Text of a code; never null.
+#[unsafe(no_mangle)]
+pub extern "C" fn stratum_error_text(result: StratumResult) -> *const c_char {
+    codes::text(result).as_ptr()
+}
+
+/// Tables of a built-in arm: "lwr_iv". To start from, or to change one's limits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_arm_preset(
+    name: *const c_char,
+    arm: *mut StratumArm,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        match border::is_name(name, c"lwr_iv") {
+            Ok(true) => border::put(arm, StratumArm::lwr_iv()),
+            Ok(false) => Err(STRATUM_ERROR_PRESET),
+            Err(error) => Err(error),
+        }
+    })
+}
+
+/// Settings to start from: the LWR IV+, its flange in x, y, z as the one level (all
+/// seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
+/// STRATUM_ABI_VERSION of the header that the caller was compiled with.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_settings_default(
+    abi: u32,
+    settings: *mut StratumSettings,
+) -> StratumResult {
+    if abi != STRATUM_ABI_VERSION {
+        return STRATUM_ERROR_ABI;
+    }
+    // SAFETY: the contract of the header.
+    code(unsafe { border::put(settings, StratumSettings::default()) })
+}
+
+/// Says of settings what stratum_controller_init says, and why: thing, value and
+/// what is allowed, as a text of at most size - 1 characters; empty for good settings.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_settings_text(
+    settings: *const StratumSettings,
+    text: *mut c_char,
+    size: usize,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::get(settings).and_then(|settings| match settings.controller() {
+            Ok(_) => border::write_text(text, size, ""),
+            Err(refusal) => border::write_text(text, size, refusal).and(Err(refusal.code())),
+        })
+    })
+}
+
+/// Validates the settings and makes a controller of them. After an error the
+/// storage holds no controller.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_controller_init(
+    controller: *mut StratumController,
+    settings: *const StratumSettings,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::fill(controller, || {
+            border::get(settings)?
+                .controller()
+                .map_err(|refusal| refusal.code())
+        })
+        .and_then(|filled| filled)
+    })
+}
+
+/// Before the first cycle: nothing observed, no fault; the references keep every
+/// level and the null space at the posture `q` in rad.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_state_init(
+    state: *mut StratumState,
+    controller: *const StratumController,
+    q: *const f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::fill(state, || {
+            let controller = border::held(controller)?;
+            let q = finite(border::array::<STRATUM_JOINTS>(q)?)?.into();
+            Ok(Held {
+                state: ControllerState::new(),
+                reference: controller.rest(&q),
+                step: IDLE,
+            })
+        })
+        .and_then(|filled| filled)
+    })
+}
+
+/// Before the first cycle and after a reset.
+const IDLE: Step<Scalar> = Step {
+    torque: zeros(),
+    residual: zeros(),
+    gravity: zeros(),
+    coriolis: zeros(),
+    status: Status {
+        fault: None,
+        saturated: controller_core::fault::Flags::NONE,
+        rank: controller_core::fault::Flags::NONE,
+    },
+};
+
+/// Sets all references to rest where the posture `q` in rad puts them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_reference_hold(
+    state: *mut StratumState,
+    controller: *const StratumController,
+    q: *const f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.and_then(|held| {
+        // SAFETY: likewise.
+        let (controller, q) = unsafe { (border::held(controller)?, border::array(q)?) };
+        held.reference = controller.rest(&finite::<STRATUM_JOINTS>(q)?.into());
+        Ok(())
+    }))
+}
+
+/// Sets the reference of a level, from the next step on.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_reference_set(
+    state: *mut StratumState,
+    level: u32,
+    reference: *const StratumReference,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.and_then(|held| {
+        // SAFETY: likewise.
+        let reference = unsafe { border::get(reference) }?;
+        let place = index(level)
+            .and_then(|index| held.reference.tasks.get_mut(index))
+            .ok_or(STRATUM_ERROR_LEVEL)?;
+        for part in [reference.x, reference.dx, reference.ddx] {
+            finite(part)?;
+        }
+        let [w, x, y, z] = finite(reference.orientation)?;
+        let [min, max] = controller_core::measurement::QUATERNION_NORMS
+            .map(|norm| Scalar::from_f64(norm * norm));
+        if !(min..=max).contains(&(w * w + x * x + y * y + z * z)) {
+            return Err(STRATUM_ERROR_ORIENTATION);
+        }
+        *place = reference.task_reference();
+        Ok(())
+    }))
+}
+
+/// Level 1 is entry 0.
+fn index(level: u32) -> Option<usize> {
+    usize::try_from(level).ok()?.checked_sub(1)
+}
+
+/// The reference of a level as it is set: after stratum_state_init where the level
+/// is, to start a motion from.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_reference_get(
+    state: *const StratumState,
+    level: u32,
+    reference: *mut StratumReference,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held(state) }.and_then(|held| {
+        let set = index(level)
+            .and_then(|index| held.reference.tasks.get(index))
+            .ok_or(STRATUM_ERROR_LEVEL)?;
+        // SAFETY: likewise.
+        unsafe { border::put(reference, set.into()) }
+    }))
+}
+
+/// Sets the posture in rad towards which the null space is compliant.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_posture_set(
+    state: *mut StratumState,
+    posture: *const f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.and_then(|held| {
+        // SAFETY: likewise.
+        held.reference.posture =
+            finite::<STRATUM_JOINTS>(unsafe { border::array(posture) }?)?.into();
+        Ok(())
+    }))
+}
+
+/// One cycle: posture in rad, speeds in rad/s, time since the last measurement in s
+/// (the nominal cycle at first); torque in Nm, always finite and within limits.
+/// A measurement that cannot be true latches a fault: its number is answered, the
+/// torque is the gravity torque of the last plausible posture, until
+/// stratum_reset. On an argument error the torque is zero and the state is as
+/// before. q, dq and torque may be the same array.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_step(
+    controller: *const StratumController,
+    state: *mut StratumState,
+    q: *const f64,
+    dq: *const f64,
+    interval_s: f64,
+    torque: *mut f64,
+) -> StratumResult {
+    let torque = torque.cast::<[f64; STRATUM_JOINTS]>();
+    // SAFETY: the contract of the header. The measurement is copied before the
+    // torque is written.
+    unsafe {
+        let measured = border::array(q).and_then(|q| Ok((q, border::array(dq)?)));
+        if let Err(error) = border::put(torque, [0.0; STRATUM_JOINTS]) {
+            return error;
+        }
+        let (controller, held, (q, dq)) =
+            match (border::held(controller), border::held_mut(state), measured) {
+                (Ok(controller), Ok(held), Ok(measured)) => (controller, held, measured),
+                (Err(error), ..) | (_, Err(error), _) | (.., Err(error)) => return error,
+            };
+        if controller.tasks().len() != held.reference.tasks.len() {
+            return STRATUM_ERROR_MISMATCH;
+        }
+        let measurement = Measurement {
+            q: settings::joints(&q),
+            dq: settings::joints(&dq),
+            interval_s: Scalar::from_f64(interval_s),
+        };
+        held.step = controller.step(&mut held.state, &measurement, &held.reference);
+        torque.write(held.step.torque.map(Real::to_f64).into());
+        held.step
+            .status
+            .fault
+            .map_or(STRATUM_OK, |fault| codes::of_fault(fault.kind))
+    }
+}
+
+/// What limited or degraded the last cycle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_status(
+    state: *const StratumState,
+    status: *mut StratumStatus,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held(state) }.and_then(|held| {
+        let Status {
+            fault,
+            saturated,
+            rank,
+        } = held.step.status;
+        let mut answer = StratumStatus {
+            saturated: u32::from(saturated.0),
+            rank: u32::from(rank.0),
+            ..StratumStatus::default()
+        };
+        if let Some(fault) = fault {
+            answer.fault = codes::of_fault(fault.kind);
+            answer.fault_index = u32::from(fault.index);
+            answer.fault_value = fault.value;
+            answer.fault_min = fault.min;
+            answer.fault_max = fault.max;
+        }
+        // SAFETY: likewise.
+        unsafe { border::put(status, answer) }
+    }))
+}
+
+/// The latched fault as a text of at most size - 1 characters: quantity, value, what
+/// is allowed; empty if there is none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_fault_text(
+    state: *const StratumState,
+    text: *mut c_char,
+    size: usize,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::held(state).and_then(|held| match held.state.fault() {
+            Some(fault) => border::write_text(text, size, fault),
+            None => border::write_text(text, size, ""),
+        })
+    })
+}
+
+/// One joint vector of the last cycle.
+unsafe fn last(
+    state: *const StratumState,
+    values: *mut f64,
+    pick: fn(&Step<Scalar>) -> [Scalar; STRATUM_JOINTS],
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::held(state).and_then(|held| {
+            let values = values.cast::<[f64; STRATUM_JOINTS]>();
+            border::put(values, pick(&held.step).map(Real::to_f64))
+        })
+    })
+}
+
+/// Residual of the last cycle in Nm, tends to minus the torque that the arm exerts
+/// on its environment; zero while a fault is latched.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_residual(
+    state: *const StratumState,
+    residual: *mut f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    unsafe { last(state, residual, |step| step.residual.into()) }
+}
+
+/// Gravity torque of the last cycle in Nm, contained in the torque: to be taken off
+/// for a robot that adds gravity itself.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_gravity(
+    state: *const StratumState,
+    gravity: *mut f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    unsafe { last(state, gravity, |step| step.gravity.into()) }
+}
+
+/// Coriolis and centrifugal torque of the last cycle in Nm, contained in the torque.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_coriolis(
+    state: *const StratumState,
+    coriolis: *mut f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    unsafe { last(state, coriolis, |step| step.coriolis.into()) }
+}
+
+/// Tells the observer that `torque` in Nm has acted since the last cycle instead of
+/// the one it assumes: for links that round, scale or lose torques.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_applied(
+    state: *mut StratumState,
+    torque: *const f64,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.and_then(|held| {
+        // SAFETY: likewise.
+        let torque = finite::<STRATUM_JOINTS>(unsafe { border::array(torque) }?)?;
+        held.state.applied(&torque.into());
+        Ok(())
+    }))
+}
+
+/// The next cycle comes after a gap that is too long to be an interval.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_skip(state: *mut StratumState) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.map(|held| held.state.skip()))
+}
+
+/// Clears a latched fault; the observer starts anew, the references stay.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_reset(state: *mut StratumState) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.map(|held| {
+        held.state.reset();
+        held.step = IDLE;
+    }))
+}
+
+/// Nothing in this library panics; the compiler wants a handler nevertheless.
+#[cfg(all(target_os = "none", not(test)))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}
