@@ -15,6 +15,8 @@ mod tools;
 
 use std::process::ExitCode;
 
+use tools::Need;
+
 const USAGE: &str = "usage: cargo xtask COMMAND
 
 selftest-m7 [CYCLES]   torques of host and Cortex-M7, bit for bit; default 10000 cycles
@@ -22,7 +24,7 @@ panic-free-m7          constructor and cycle link without a panic, and not with 
 bench-m7 [--write]     instructions, stack and memory against docs/timing.json;
                        --write makes docs/timing.md and docs/timing.json anew
 arm-m7                 the application image; its log needs defmt-print
-missing-m7             prints what has to be installed, exit code 2 if anything";
+missing-m7             prints what has to be installed for the first three, exit code 2 if anything";
 
 /// What came out: a verdict, or why there is none.
 type Outcome = Result<bool, tools::Trouble>;
@@ -37,7 +39,7 @@ fn main() -> ExitCode {
         ["bench-m7"] => bench::run(false),
         ["bench-m7", "--write"] => bench::run(true),
         ["arm-m7"] => arm::run(),
-        ["missing-m7"] => tools::Tools::find().map(|_| true),
+        ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         _ => {
             eprintln!("{USAGE}");
             return 2.into();
