@@ -4,19 +4,16 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use crate::Outcome;
-use crate::tools::{Tools, Trouble, failed};
+use crate::tools::{Need, Tools, failed};
 
 /// Runs it and decodes what it logs.
 pub fn run() -> Outcome {
-    let tools = Tools::find()?;
+    let tools = Tools::find(&[Need::Emulator, Need::LogDecoder])?;
     let image = tools.image("arm", &[])?;
     let output = tools.emulate(&image, &[])?;
     let mut decoder = Command::new("defmt-print");
     decoder.arg("-e").arg(&image).stdin(Stdio::piped());
-    let Ok(mut decoder) = decoder.stdout(Stdio::piped()).spawn() else {
-        let install = "cargo install defmt-print --version 1.2.0 --locked";
-        return Err(Trouble::Missing(vec![("defmt-print", install)]));
-    };
+    let mut decoder = decoder.stdout(Stdio::piped()).spawn()?;
     if let Some(mut stdin) = decoder.stdin.take() {
         stdin.write_all(&output.stdout)?;
     }

@@ -9,7 +9,7 @@ use crate::Outcome;
 use crate::figures::Figures;
 use crate::stack::CallGraph;
 use crate::table;
-use crate::tools::{Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
+use crate::tools::{Need, Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
 
 const JSON: &str = "docs/timing.json";
 const TABLE: &str = "docs/timing.md";
@@ -19,7 +19,7 @@ const ALLOWANCE: f64 = 0.02;
 
 /// Measures; compares with the committed figures, or writes them anew.
 pub fn run(write: bool) -> Outcome {
-    let tools = Tools::find()?;
+    let tools = Tools::find(&[Need::Emulator, Need::LlvmTools])?;
     let figures = measure(&tools)?;
     print!("{}", table::summary(&figures));
     let (json, text) = (tools.root.join(JSON), tools.root.join(TABLE));

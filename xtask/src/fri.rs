@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 use crate::Outcome;
-use crate::tools::{QEMU, Tools};
+use crate::tools::{Need, QEMU, Tools};
 
 /// Port on which the emulated board is reached, and of `hil-sim serve`.
 const PORT: &str = "49938";
@@ -22,7 +22,7 @@ pub enum Link {
 /// Runs the image until the motion is over, the emergency stop is pulled or the
 /// robot is gone. What it says is printed as it comes.
 pub fn run(link: Link) -> Outcome {
-    let tools = Tools::find()?;
+    let tools = Tools::find(&[Need::Emulator])?;
     let image = tools.image("fri", &[])?;
     // Switches that the image looks for: a stale one would stop it at once.
     let (serial, stop) = (tools.work.join("fri-serial"), tools.work.join("e-stop"));

@@ -16,6 +16,8 @@ mod tools;
 
 use std::process::ExitCode;
 
+use tools::Need;
+
 const USAGE: &str = "usage: cargo xtask COMMAND
 
 selftest-m7 [CYCLES]   torques of host and Cortex-M7, bit for bit; default 10000 cycles
@@ -25,7 +27,7 @@ bench-m7 [--write]     instructions, stack and memory against docs/timing.json;
 arm-m7                 the application image; its log needs defmt-print
 fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a serial
                        port: run hil-sim serve beside it
-missing-m7             prints what has to be installed, exit code 2 if anything";
+missing-m7             prints what has to be installed for the first three, exit code 2 if anything";
 
 /// What came out: a verdict, or why there is none.
 type Outcome = Result<bool, tools::Trouble>;
@@ -42,7 +44,7 @@ fn main() -> ExitCode {
         ["arm-m7"] => arm::run(),
         ["fri-m7"] => fri::run(fri::Link::Ethernet),
         ["fri-m7", "--serial"] => fri::run(fri::Link::Serial),
-        ["missing-m7"] => tools::Tools::find().map(|_| true),
+        ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         _ => {
             eprintln!("{USAGE}");
             return 2.into();

@@ -9,7 +9,7 @@ const SYMBOL: &str = "a_panic_is_reachable";
 
 /// Links `panic-free`, and fails to link it with a panic put in.
 pub fn run() -> Outcome {
-    let tools = Tools::find()?;
+    let tools = Tools::find(&[])?;
     let output = tools.try_image("panic-free", &[])?;
     if !output.status.success() {
         if !String::from_utf8_lossy(&output.stderr).contains(SYMBOL) {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::Outcome;
-use crate::tools::{Tools, Trouble};
+use crate::tools::{Need, Tools, Trouble};
 
 /// The log that the image opens.
 const LOG: &str = "selftest.log";
@@ -19,7 +19,7 @@ const DAMAGE: (usize, usize) = (77, 5);
 /// The host writes the log, the target replays it. Then one bit of a short log is
 /// turned, and the target must find exactly this one.
 pub fn run(cycles: &str) -> Outcome {
-    let tools = Tools::find()?;
+    let tools = Tools::find(&[Need::Emulator])?;
     let image = tools.image("selftest", &[])?;
     print!("host:   {}", tools.host("selftest", &[LOG, cycles])?);
     let output = tools.emulate(&image, &[])?;

@@ -53,6 +53,17 @@ impl From<io::Error> for Trouble {
     }
 }
 
+/// What a command needs besides the target.
+#[derive(Clone, Copy, Debug)]
+pub enum Need {
+    /// QEMU.
+    Emulator,
+    /// Disassembler and sizes.
+    LlvmTools,
+    /// Of the application's log.
+    LogDecoder,
+}
+
 /// Everything that is needed is there.
 #[derive(Debug)]
 pub struct Tools {
@@ -65,15 +76,38 @@ pub struct Tools {
 }
 
 impl Tools {
-    /// Looks for QEMU and the target's standard library.
-    pub fn find() -> Result<Self, Trouble> {
+    /// Looks for the target's standard library and for `needs`; says everything
+    /// that is missing at once.
+    pub fn find(needs: &[Need]) -> Result<Self, Trouble> {
         let mut missing = Vec::new();
-        if Command::new(QEMU).arg("--version").output().is_err() {
-            missing.push((QEMU, "apt-get install qemu-system-arm"));
-        }
         let libraries = sysroot()?.join("lib/rustlib").join(TARGET).join("lib");
         if !libraries.is_dir() {
             missing.push((TARGET, "rustup target add thumbv7em-none-eabihf"));
+        }
+        for need in needs {
+            let (there, what, how) = match need {
+                Need::Emulator => (
+                    Command::new(QEMU).arg("--version").output().is_ok(),
+                    QEMU,
+                    "apt-get install qemu-system-arm",
+                ),
+                Need::LlvmTools => (
+                    llvm_tool("llvm-objdump").is_ok(),
+                    "llvm-tools",
+                    "rustup component add llvm-tools",
+                ),
+                Need::LogDecoder => (
+                    Command::new("defmt-print")
+                        .arg("--version")
+                        .output()
+                        .is_ok(),
+                    "defmt-print",
+                    "cargo install defmt-print --version 1.2.0 --locked",
+                ),
+            };
+            if !there {
+                missing.push((what, how));
+            }
         }
         if !missing.is_empty() {
             return Err(Trouble::Missing(missing));
