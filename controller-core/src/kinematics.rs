@@ -2,7 +2,7 @@
 //! any link with position, velocity and Jacobian rows.
 
 use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
-use crate::model::ArmModel;
+use crate::model::{ArmModel, Twist};
 use crate::real::Real;
 
 /// Frames 0 (fixed) to 7 (flange side).
@@ -45,6 +45,9 @@ pub struct Kinematics<T: Real> {
     pub axis: [Vector3<T>; DOF],
     /// Time derivative of the axis of joint i + 1 \[1/s\].
     pub axis_rate: [Vector3<T>; DOF],
+    /// Sine and cosine of q, for the dynamics.
+    pub(crate) sine: [T; DOF],
+    pub(crate) cosine: [T; DOF],
 }
 
 /// A point of the arm at one instant.
@@ -88,29 +91,49 @@ impl<T: Real> Kinematics<T> {
             origin_velocity: [zero; FRAMES],
             axis: [zero; DOF],
             axis_rate: [zero; DOF],
+            sine: [T::ZERO; DOF],
+            cosine: [T::ZERO; DOF],
         };
-        k.rotation[0] = Matrix3::identity();
+        // By themselves, so that the compiler can do several joints at once.
+        for i in 0..DOF {
+            (k.sine[i], k.cosine[i]) = state.q[i].sine_cosine();
+        }
         k.origin[0].z = model.base_height;
+        let [mut x, mut y, mut z] = [
+            [T::ONE, T::ZERO, T::ZERO],
+            [T::ZERO, T::ONE, T::ZERO],
+            [T::ZERO, T::ZERO, T::ONE],
+        ]
+        .map(Vector3::from);
+        let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
+        k.rotation[0] = Matrix3::from_columns(&[x, y, z]);
         for i in 0..DOF {
             let link = &model.links[i];
-            let (sin, cos) = state.q[i].sine_cosine();
-            let x = k.rotation[i].column(0).into_owned();
-            let y = k.rotation[i].column(1).into_owned();
-            let z = k.rotation[i].column(2).into_owned();
-            let new_x = x * cos + y * sin;
-            let turned_y = y * cos - x * sin;
-            let arm = new_x * link.a + z * link.d;
-            let spin = k.angular_velocity[i] + z * state.dq[i];
+            let (sin, cos) = (k.sine[i], k.cosine[i]);
             k.axis[i] = z;
-            k.axis_rate[i] = k.angular_velocity[i].cross(&z);
-            k.rotation[i + 1] = Matrix3::from_columns(&[
-                new_x,
-                turned_y * link.cos_alpha + z * link.sin_alpha,
-                z * link.cos_alpha - turned_y * link.sin_alpha,
-            ]);
-            k.origin[i + 1] = k.origin[i] + arm;
+            k.axis_rate[i] = spin.cross(&z);
+            spin += z * state.dq[i];
+            let turned_y = y * cos - x * sin;
+            x = x * cos + y * sin;
+            // The way to the next origin, most often none.
+            if link.a != T::ZERO || link.d != T::ZERO {
+                let arm = x * link.a + z * link.d;
+                origin += arm;
+                velocity += spin.cross(&arm);
+            }
+            (y, z) = match link.twist.0 {
+                Twist::NONE => (turned_y, z),
+                Twist::RIGHT => (z, -turned_y),
+                Twist::LEFT => (-z, turned_y),
+                _ => (
+                    turned_y * link.cos_alpha + z * link.sin_alpha,
+                    z * link.cos_alpha - turned_y * link.sin_alpha,
+                ),
+            };
+            k.rotation[i + 1] = Matrix3::from_columns(&[x, y, z]);
+            k.origin[i + 1] = origin;
             k.angular_velocity[i + 1] = spin;
-            k.origin_velocity[i + 1] = k.origin_velocity[i] + spin.cross(&arm);
+            k.origin_velocity[i + 1] = velocity;
         }
         k
     }
