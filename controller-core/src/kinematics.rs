@@ -41,10 +41,13 @@ pub struct Kinematics<T: Real> {
     pub angular_velocity: [Vector3<T>; FRAMES],
     /// Velocity of the origin of frame i, carried by link i \[m/s\].
     pub origin_velocity: [Vector3<T>; FRAMES],
-    /// Axis of joint i + 1, unit vector (z of frame i).
-    pub axis: [Vector3<T>; DOF],
-    /// Time derivative of the axis of joint i + 1 \[1/s\].
-    pub axis_rate: [Vector3<T>; DOF],
+    /// Axes of the joints, unit vectors (z of frame i for joint i + 1), by rows x, y, z.
+    pub axis: [JointVector<T>; 3],
+    /// Time derivatives of the axes \[1/s\], by rows x, y, z.
+    pub axis_rate: [JointVector<T>; 3],
+    /// `origin` of the frames of the joints' axes and its velocity, by rows.
+    joint_origin: [JointVector<T>; 3],
+    joint_velocity: [JointVector<T>; 3],
     /// Sine and cosine of q, for the dynamics.
     pub(crate) sine: [T; DOF],
     pub(crate) cosine: [T; DOF],
@@ -89,8 +92,10 @@ impl<T: Real> Kinematics<T> {
             origin: [zero; FRAMES],
             angular_velocity: [zero; FRAMES],
             origin_velocity: [zero; FRAMES],
-            axis: [zero; DOF],
-            axis_rate: [zero; DOF],
+            axis: [zeros(); 3],
+            axis_rate: [zeros(); 3],
+            joint_origin: [zeros(); 3],
+            joint_velocity: [zeros(); 3],
             sine: [T::ZERO; DOF],
             cosine: [T::ZERO; DOF],
         };
@@ -110,8 +115,13 @@ impl<T: Real> Kinematics<T> {
         for i in 0..DOF {
             let link = &model.links[i];
             let (sin, cos) = (k.sine[i], k.cosine[i]);
-            k.axis[i] = z;
-            k.axis_rate[i] = spin.cross(&z);
+            let axis_rate = spin.cross(&z);
+            for row in 0..3 {
+                k.axis[row][i] = z[row];
+                k.axis_rate[row][i] = axis_rate[row];
+                k.joint_origin[row][i] = origin[row];
+                k.joint_velocity[row][i] = velocity[row];
+            }
             spin += z * state.dq[i];
             let turned_y = y * cos - x * sin;
             x = x * cos + y * sin;
@@ -161,22 +171,21 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     #[inline]
     pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> JacobianRows<T> {
+        let lever = difference(&motion.x, &self.joint_origin);
+        let lever_rate = difference(&motion.dx, &self.joint_velocity);
         let mut rows = JacobianRows {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
-        for i in 0..DOF {
-            if i < link {
-                let lever = motion.x - self.origin[i];
-                let lever_rate = motion.dx - self.origin_velocity[i];
-                let column = self.axis[i].cross(&lever);
-                let column_rate = self.axis_rate[i].cross(&lever) + self.axis[i].cross(&lever_rate);
-                for axis in 0..3 {
-                    rows.jacobian[axis][i] = column[axis];
-                    rows.jacobian_dot[axis][i] = column_rate[axis];
-                }
+        for (row, [y, z]) in [[1, 2], [2, 0], [0, 1]].into_iter().enumerate() {
+            let (axis, rate) = (&self.axis, &self.axis_rate);
+            for i in 0..DOF {
+                rows.jacobian[row][i] = axis[y][i] * lever[z][i] - axis[z][i] * lever[y][i];
+                rows.jacobian_dot[row][i] = (rate[y][i] * lever[z][i] - rate[z][i] * lever[y][i])
+                    + (axis[y][i] * lever_rate[z][i] - axis[z][i] * lever_rate[y][i]);
             }
         }
+        rows.cut(link);
         rows
     }
 
@@ -197,17 +206,35 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn angular_jacobian(&self, link: usize) -> JacobianRows<T> {
         let mut rows = JacobianRows {
-            jacobian: [zeros(); 3],
-            jacobian_dot: [zeros(); 3],
+            jacobian: self.axis,
+            jacobian_dot: self.axis_rate,
         };
-        for i in 0..DOF {
-            if i < link {
-                for axis in 0..3 {
-                    rows.jacobian[axis][i] = self.axis[i][axis];
-                    rows.jacobian_dot[axis][i] = self.axis_rate[i][axis];
-                }
-            }
-        }
+        rows.cut(link);
         rows
     }
+}
+
+impl<T: Real> JacobianRows<T> {
+    /// Joints behind `link` do not move it.
+    #[inline(always)]
+    fn cut(&mut self, link: usize) {
+        for i in link..DOF {
+            for row in 0..3 {
+                self.jacobian[row][i] = T::ZERO;
+                self.jacobian_dot[row][i] = T::ZERO;
+            }
+        }
+    }
+}
+
+/// One vector less that of every joint, by rows.
+#[inline(always)]
+fn difference<T: Real>(one: &Vector3<T>, each: &[JointVector<T>; 3]) -> [JointVector<T>; 3] {
+    let mut rows = [zeros(); 3];
+    for row in 0..3 {
+        for i in 0..DOF {
+            rows[row][i] = one[row] - each[row][i];
+        }
+    }
+    rows
 }
