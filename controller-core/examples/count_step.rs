@@ -234,7 +234,8 @@ fn main() {
     if wanted == "stages" {
         let inputs = &states()[..16];
         stages(&levels::<f64>(3), inputs);
-        if wanted == "x" {} stages(&levels::<f32>(3), inputs);
+        if wanted == "x" {}
+        stages(&levels::<f32>(3), inputs);
     } else {
         let mut inputs = states();
         if wanted == "quick" {

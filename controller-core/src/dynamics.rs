@@ -65,31 +65,30 @@ impl<T: Real> Dynamics<T> {
         let mut coriolis_matrix = zeros();
         let mut gravity: JointVector<T> = zeros();
         let axis_rate = motion.map(|motion| AxisRate::new(&motion));
-        let mut group = Moments::of_link(&model.links[DOF - 1], &motion[DOF - 1]);
+        let mut group = Moments::zero();
         for i in (0..DOF).rev() {
             if i < DOF - 1 {
                 group = group.inward(&way(i + 1));
-                group.add(&Moments::of_link(&model.links[i], &motion[i]));
             }
+            group.add_link(&model.links[i], &motion[i]);
             let [gx, gy, _] = motion[i].gravity;
             gravity[i] = gx * group.first[1] - gy * group.first[0];
 
             let mut wrench = JointWrench::new(&group, &axis_rate[i]);
-            mass_matrix[(i, i)] = wrench.inertia_moment[2];
-            coriolis_matrix[(i, i)] = wrench.rate_moment[2];
+            mass_matrix[(i, i)] = wrench.rows[2][0];
+            coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
                 wrench = wrench.inward(&way(j + 1));
-                let [mx, my, inertia] = wrench.inertia_moment;
-                let [fx, fy, _] = wrench.inertia_force;
+                let [x, y, z] = &wrench.rows;
                 let AxisRate {
                     turn: [a, b],
                     slide: [u, v],
                 } = axis_rate[j];
-                mass_matrix[(i, j)] = inertia;
-                mass_matrix[(j, i)] = inertia;
-                coriolis_matrix[(j, i)] = wrench.rate_moment[2];
+                mass_matrix[(i, j)] = z[0];
+                mass_matrix[(j, i)] = z[0];
+                coriolis_matrix[(j, i)] = z[1];
                 coriolis_matrix[(i, j)] =
-                    mx * a + my * b + (fx * u + fy * v) + wrench.transposed_rate[2];
+                    (x[0] * a + y[0] * b) + (x[2] * u + y[2] * v) + wrench.transposed_rate[2];
             }
         }
 

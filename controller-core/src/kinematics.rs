@@ -1,7 +1,8 @@
 //! Frames, joint axes and their rates, from one pass over the chain; points on
 //! any link with position, velocity and Jacobian rows.
 
-use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
+use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, sines_cosines, zeros};
+use crate::linalg::for_each_joint;
 use crate::model::{ArmModel, Twist};
 use crate::real::Real;
 
@@ -49,8 +50,8 @@ pub struct Kinematics<T: Real> {
     joint_origin: [JointVector<T>; 3],
     joint_velocity: [JointVector<T>; 3],
     /// Sine and cosine of q, for the dynamics.
-    pub(crate) sine: [T; DOF],
-    pub(crate) cosine: [T; DOF],
+    pub(crate) sine: JointVector<T>,
+    pub(crate) cosine: JointVector<T>,
 }
 
 /// A point of the arm at one instant.
@@ -87,8 +88,9 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn new(model: &ArmModel<T>, state: &JointState<T>) -> Self {
         let zero = Vector3::from([T::ZERO; 3]);
+        let (sine, cosine) = sines_cosines(&state.q);
         let mut k = Self {
-            rotation: [zeros(); FRAMES],
+            rotation: [Matrix3::identity(); FRAMES],
             origin: [zero; FRAMES],
             angular_velocity: [zero; FRAMES],
             origin_velocity: [zero; FRAMES],
@@ -96,13 +98,9 @@ impl<T: Real> Kinematics<T> {
             axis_rate: [zeros(); 3],
             joint_origin: [zeros(); 3],
             joint_velocity: [zeros(); 3],
-            sine: [T::ZERO; DOF],
-            cosine: [T::ZERO; DOF],
+            sine,
+            cosine,
         };
-        // By themselves, so that the compiler can do several joints at once.
-        for i in 0..DOF {
-            (k.sine[i], k.cosine[i]) = state.q[i].sine_cosine();
-        }
         k.origin[0].z = model.base_height;
         let [mut x, mut y, mut z] = [
             [T::ONE, T::ZERO, T::ZERO],
@@ -111,8 +109,7 @@ impl<T: Real> Kinematics<T> {
         ]
         .map(Vector3::from);
         let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
-        k.rotation[0] = Matrix3::from_columns(&[x, y, z]);
-        for i in 0..DOF {
+        for_each_joint!(i, {
             let link = &model.links[i];
             let (sin, cos) = (k.sine[i], k.cosine[i]);
             let axis_rate = spin.cross(&z);
@@ -144,7 +141,7 @@ impl<T: Real> Kinematics<T> {
             k.origin[i + 1] = origin;
             k.angular_velocity[i + 1] = spin;
             k.origin_velocity[i + 1] = velocity;
-        }
+        });
         k
     }
 

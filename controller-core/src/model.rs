@@ -10,9 +10,8 @@ mod lwr_iv;
 
 use core::fmt;
 
-use crate::joint::{DOF, JointVector, Vector3};
+use crate::joint::{DOF, JointVector, Lanes, Vector3};
 use crate::real::Real;
-use crate::spatial::Symmetric;
 
 pub use lwr_iv::{LWR_IV, LWR_IV_POINTS};
 
@@ -128,7 +127,8 @@ impl fmt::Display for ModelError {
 
 impl core::error::Error for ModelError {}
 
-/// What a DH twist does: right angles only exchange axes.
+/// What a link does to what is carried over it: right angles of twist without a
+/// length a only exchange axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Twist(pub u8);
 
@@ -140,13 +140,15 @@ impl Twist {
     pub const LEFT: u8 = 2;
     pub const OTHER: u8 = 3;
 
-    fn new<T: Real>(sine: T, cosine: T) -> Self {
-        let one = T::ONE;
-        Self(if (sine, cosine) == (T::ZERO, one) {
+    fn new(sine: f64, cosine: f64, a: f64) -> Self {
+        let (zero, one) = (0.0, 1.0);
+        Self(if a != zero {
+            Self::OTHER
+        } else if (sine, cosine) == (zero, one) {
             Self::NONE
-        } else if (sine, cosine) == (one, T::ZERO) {
+        } else if (sine, cosine) == (one, zero) {
             Self::RIGHT
-        } else if (sine, cosine) == (-one, T::ZERO) {
+        } else if (sine, cosine) == (-one, zero) {
             Self::LEFT
         } else {
             Self::OTHER
@@ -165,12 +167,10 @@ pub(crate) struct Link<T: Real> {
     pub cos_alpha: T,
     pub sin_alpha: T,
     pub twist: Twist,
-    pub mass: T,
-    /// First moment of mass, integral of p dm \[kg m\].
-    pub first_moment: [T; 3],
-    /// Second moment of mass, integral of p p^T dm \[kg m2\]. The inertia tensor
-    /// is tr(S) 1 - S.
-    pub second_moment: Symmetric<T>,
+    /// Integral of (p, 1) (p, 1)^T dm by rows: the second moment S \[kg m2\] with the
+    /// first moment h \[kg m\] behind and below it, and the mass \[kg\]. The inertia
+    /// tensor is tr(S) 1 - S.
+    pub moments: [Lanes<T>; 4],
 }
 
 /// A validated arm model. Immutable; shared by any number of controllers.
@@ -249,22 +249,19 @@ impl<T: Real> Link<T> {
         let com =
             turn * nalgebra::Vector3::from(link.com) + nalgebra::Vector3::new(link.a, 0.0, link.d);
         let s = turn * second_moment(link) * turn.transpose() + com * com.transpose() * link.mass;
+        let h = com * link.mass;
         Self {
             a: T::from_f64(link.a),
             d: T::from_f64(link.d),
             cos_alpha: T::from_f64(cos_alpha),
             sin_alpha: T::from_f64(sin_alpha),
-            twist: Twist::new(sin_alpha, cos_alpha),
-            mass: T::from_f64(link.mass),
-            first_moment: (com * link.mass).map(T::from_f64).into(),
-            second_moment: Symmetric {
-                xx: T::from_f64(s.m11),
-                xy: T::from_f64(s.m12),
-                xz: T::from_f64(s.m13),
-                yy: T::from_f64(s.m22),
-                yz: T::from_f64(s.m23),
-                zz: T::from_f64(s.m33),
-            },
+            twist: Twist::new(sin_alpha, cos_alpha, link.a),
+            moments: [
+                Lanes::from([s.m11, s.m12, s.m13, h.x].map(T::from_f64)),
+                Lanes::from([s.m12, s.m22, s.m23, h.y].map(T::from_f64)),
+                Lanes::from([s.m13, s.m23, s.m33, h.z].map(T::from_f64)),
+                Lanes::from([h.x, h.y, h.z, link.mass].map(T::from_f64)),
+            ],
         }
     }
 
@@ -276,16 +273,7 @@ impl<T: Real> Link<T> {
             cos_alpha: T::ONE,
             sin_alpha: zero,
             twist: Twist(Twist::NONE),
-            mass: zero,
-            first_moment: [zero; 3],
-            second_moment: Symmetric {
-                xx: zero,
-                xy: zero,
-                xz: zero,
-                yy: zero,
-                yz: zero,
-                zz: zero,
-            },
+            moments: [Lanes::from([zero; 4]); 4],
         }
     }
 }

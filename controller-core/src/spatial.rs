@@ -10,7 +10,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use crate::joint::Vector3;
+use crate::joint::Lanes;
 use crate::model::{Link, Twist};
 use crate::real::Real;
 
@@ -112,7 +112,7 @@ impl<T: Real> Motion<T> {
         let [wx, wy, wz] = self.spin;
         let [vx, vy, vz] = self.velocity;
         let mut velocity = [vx + wy * d, vy - wx * d, vz];
-        if a != T::ZERO {
+        if TWIST == Twist::OTHER {
             velocity[1] += wz * a;
             velocity[2] -= wy * a;
         }
@@ -144,57 +144,55 @@ pub(crate) struct Symmetric<T: Real> {
 /// | `mass` | dm | kg |
 /// | `first` h | p dm | kg m |
 /// | `second` S | p p^T dm | kg m2 |
-/// | `momentum` l | dp dm | kg m/s |
-/// | `rate` D | dp p^T dm, by columns | kg m2/s |
+/// | `flow` \[D l\] | dp (p, 1)^T dm, by rows | kg m2/s, kg m/s |
 ///
-/// All five add over links.
+/// All add over links. Column l of `flow` is the momentum.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments<T: Real> {
     pub mass: T,
     pub first: [T; 3],
     pub second: Symmetric<T>,
-    pub momentum: [T; 3],
-    pub rate: [Vector3<T>; 3],
+    pub flow: [Lanes<T>; 3],
 }
 
 impl<T: Real> Moments<T> {
-    /// One link alone: dp = v + omega x p.
-    #[inline(always)]
-    pub fn of_link(link: &Link<T>, motion: &Motion<T>) -> Self {
-        let [hx, hy, hz] = link.first_moment;
-        let s = link.second_moment;
-        let spin = Vector3::from(motion.spin);
-        let velocity = Vector3::from(motion.velocity);
-        let column = |h: T, x: T, y: T, z: T| velocity * h + spin.cross(&Vector3::from([x, y, z]));
-        let momentum = column(link.mass, hx, hy, hz);
+    pub fn zero() -> Self {
+        let zero = T::ZERO;
         Self {
-            mass: link.mass,
-            first: link.first_moment,
-            second: s,
-            momentum: momentum.into(),
-            rate: [
-                column(hx, s.xx, s.xy, s.xz),
-                column(hy, s.xy, s.yy, s.yz),
-                column(hz, s.xz, s.yz, s.zz),
-            ],
+            mass: zero,
+            first: [zero; 3],
+            second: Symmetric {
+                xx: zero,
+                xy: zero,
+                xz: zero,
+                yy: zero,
+                yz: zero,
+                zz: zero,
+            },
+            flow: [Lanes::from([zero; 4]); 3],
         }
     }
 
+    /// Adds one link, whose elements move with dp = v + omega x p.
     #[inline(always)]
-    pub fn add(&mut self, other: &Self) {
-        let (s, o) = (&mut self.second, &other.second);
-        self.mass += other.mass;
-        s.xx += o.xx;
-        s.xy += o.xy;
-        s.xz += o.xz;
-        s.yy += o.yy;
-        s.yz += o.yz;
-        s.zz += o.zz;
-        for i in 0..3 {
-            self.first[i] += other.first[i];
-            self.momentum[i] += other.momentum[i];
-            self.rate[i] += other.rate[i];
-        }
+    pub fn add_link(&mut self, link: &Link<T>, motion: &Motion<T>) {
+        let [x, y, z, one] = &link.moments;
+        let [wx, wy, wz] = motion.spin;
+        let [vx, vy, vz] = motion.velocity;
+        self.flow[0] += one * vx + (z * wy - y * wz);
+        self.flow[1] += one * vy + (x * wz - z * wx);
+        self.flow[2] += one * vz + (y * wx - x * wy);
+        self.mass += one[3];
+        self.first[0] += one[0];
+        self.first[1] += one[1];
+        self.first[2] += one[2];
+        let s = &mut self.second;
+        s.xx += x[0];
+        s.xy += x[1];
+        s.xz += x[2];
+        s.yy += y[1];
+        s.yz += y[2];
+        s.zz += z[2];
     }
 
     /// The same about the next joint frame inwards, in its axes.
@@ -205,18 +203,23 @@ impl<T: Real> Moments<T> {
 
     #[inline(always)]
     fn carried<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
+        // Rows turn with dp, entries within a row with p.
+        let turned = way.inward::<Lanes<T>, TWIST>(self.flow);
+        let row = |row: Lanes<T>| {
+            let [x, y, z] = way.inward::<T, TWIST>([row[0], row[1], row[2]]);
+            Lanes::from([x, y, z, row[3]])
+        };
         let mut moved = Self {
             mass: self.mass,
             first: way.inward::<T, TWIST>(self.first),
             second: self.second.inward::<TWIST>(way),
-            momentum: way.inward::<T, TWIST>(self.momentum),
-            rate: way
-                .inward::<Vector3<T>, TWIST>(self.rate)
-                .map(|column| Vector3::from(way.inward::<T, TWIST>(column.into()))),
+            flow: turned.map(row),
         };
         let Link { a, d, .. } = *way.link;
-        moved.shift_along_z(d);
-        if a != T::ZERO {
+        if d != T::ZERO {
+            moved.shift_along_z(d);
+        }
+        if TWIST == Twist::OTHER {
             moved.shift_along_x(a);
         }
         moved
@@ -231,7 +234,9 @@ impl<T: Real> Moments<T> {
         self.second.yz += hy * d;
         self.second.zz += (hz + hz + md) * d;
         self.first[2] += md;
-        self.rate[2] += Vector3::from(self.momentum) * d;
+        for row in &mut self.flow {
+            row[2] = row[2] + row[3] * d;
+        }
     }
 
     /// Every p becomes p + (a, 0, 0).
@@ -243,7 +248,9 @@ impl<T: Real> Moments<T> {
         self.second.xy += hy * a;
         self.second.xz += hz * a;
         self.first[0] += ma;
-        self.rate[0] += Vector3::from(self.momentum) * a;
+        for row in &mut self.flow {
+            row[0] = row[0] + row[3] * a;
+        }
     }
 }
 
@@ -312,15 +319,13 @@ impl<T: Real> Symmetric<T> {
 }
 
 /// What the links from one joint outwards contribute to its row and column of M and
-/// C, as moment and force about the origin of the joint frame they are carried to.
+/// C, as moments and forces about the origin of the joint frame they are carried to.
 #[derive(Clone, Copy)]
 pub(crate) struct JointWrench<T: Real> {
-    /// Momentum for unit speed of the joint: moment and force of I S.
-    pub inertia_moment: [T; 3],
-    pub inertia_force: [T; 3],
-    /// I dS + B S, the column of C above the diagonal.
-    pub rate_moment: [T; 3],
-    pub rate_force: [T; 3],
+    /// Rows x, y, z of four vectors, in this order: the moments of I S and of
+    /// I dS + B S, the forces of I S and of I dS + B S. I S is the momentum for unit
+    /// speed of the joint, I dS + B S the column of C above the diagonal.
+    pub rows: [Lanes<T>; 3],
     /// B^T S, a pure moment.
     pub transposed_rate: [T; 3],
 }
@@ -350,25 +355,32 @@ impl<T: Real> JointWrench<T> {
     pub fn new(group: &Moments<T>, rate: &AxisRate<T>) -> Self {
         let s = &group.second;
         let [hx, hy, hz] = group.first;
-        let [lx, ly, _] = group.momentum;
-        let [dx, dy, dz] = &group.rate;
+        let [dx, dy, dz] = &group.flow;
         let [a, b] = rate.turn;
         let [u, v] = rate.slide;
         let trace = dx[0] + dy[1];
         Self {
-            inertia_moment: [-s.xz, -s.yz, s.xx + s.yy],
-            inertia_force: [-hy, hx, T::ZERO],
-            rate_moment: [
-                (s.yy + s.zz) * a - s.xy * b - hz * v - dz[0],
-                (s.xx + s.zz) * b - s.xy * a + hz * u - dz[1],
-                hx * v - hy * u - s.xz * a - s.yz * b + trace,
+            rows: [
+                Lanes::from([
+                    -s.xz,
+                    (s.yy + s.zz) * a - s.xy * b - hz * v - dx[2],
+                    -hy,
+                    group.mass * u + hz * b - dy[3],
+                ]),
+                Lanes::from([
+                    -s.yz,
+                    (s.xx + s.zz) * b - s.xy * a + hz * u - dy[2],
+                    hx,
+                    group.mass * v - hz * a + dx[3],
+                ]),
+                Lanes::from([
+                    s.xx + s.yy,
+                    hx * v - hy * u - s.xz * a - s.yz * b + trace,
+                    T::ZERO,
+                    hy * a - hx * b,
+                ]),
             ],
-            rate_force: [
-                group.mass * u + hz * b - ly,
-                group.mass * v - hz * a + lx,
-                hy * a - hx * b,
-            ],
-            transposed_rate: [-dx[2], -dy[2], trace],
+            transposed_rate: [-dz[0], -dz[1], trace],
         }
     }
 
@@ -380,28 +392,24 @@ impl<T: Real> JointWrench<T> {
 
     #[inline(always)]
     fn carried<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
-        let turned = |v: [T; 3]| way.inward::<T, TWIST>(v);
-        let inertia_force = turned(self.inertia_force);
-        let rate_force = turned(self.rate_force);
+        let mut rows = way.inward::<Lanes<T>, TWIST>(self.rows);
+        // The forces act at (a, 0, d).
+        let Link { a, d, .. } = *way.link;
+        if d != T::ZERO {
+            for (moment, force) in [(0, 2), (1, 3)] {
+                rows[0][moment] = rows[0][moment] - rows[1][force] * d;
+                rows[1][moment] = rows[1][moment] + rows[0][force] * d;
+            }
+        }
+        if TWIST == Twist::OTHER {
+            for (moment, force) in [(0, 2), (1, 3)] {
+                rows[1][moment] = rows[1][moment] - rows[2][force] * a;
+                rows[2][moment] = rows[2][moment] + rows[1][force] * a;
+            }
+        }
         Self {
-            inertia_moment: lever(turned(self.inertia_moment), &inertia_force, way.link),
-            inertia_force,
-            rate_moment: lever(turned(self.rate_moment), &rate_force, way.link),
-            rate_force,
-            transposed_rate: turned(self.transposed_rate),
+            rows,
+            transposed_rate: way.inward::<T, TWIST>(self.transposed_rate),
         }
     }
-}
-
-/// The moment with that of `force` at (a, 0, d) added.
-#[inline(always)]
-fn lever<T: Real>(mut moment: [T; 3], force: &[T; 3], link: &Link<T>) -> [T; 3] {
-    let [fx, fy, fz] = *force;
-    moment[0] -= fy * link.d;
-    moment[1] += fx * link.d;
-    if link.a != T::ZERO {
-        moment[1] -= fz * link.a;
-        moment[2] += fy * link.a;
-    }
-    moment
 }
