@@ -29,8 +29,8 @@ impl Flags {
     /// Sets flag `index` (from 0) where `on`.
     #[inline(always)]
     pub fn set_if(&mut self, index: usize, on: bool) {
-        if on && index < 8 {
-            self.0 |= 1 << index;
+        if index < 8 {
+            self.0 |= u8::from(on) << index;
         }
     }
 }

@@ -25,7 +25,7 @@ use heapless::Vec;
 
 use crate::fault::Flags;
 use crate::joint::{DOF, JointMatrix, JointVector, zeros};
-use crate::linalg::Cholesky;
+use crate::linalg::{Cholesky, for_each_joint};
 use crate::real::Real;
 use crate::task::{MAX_ROWS, TaskRows};
 
@@ -66,50 +66,66 @@ impl<T: Real> Hierarchy<T> {
             scale: [T::ZERO; MAX_ROWS],
             deficient: Flags::NONE,
         };
-        for k in 0..MAX_ROWS {
-            if k < rows.count {
-                let mut row = cholesky.solve_lower(&rows.jacobian[k]);
-                for j in 0..k {
-                    h.reflect(j, &mut row);
-                }
-                h.eliminate(k, row);
-            }
+        let count = rows.count.min(MAX_ROWS);
+        for k in 0..count {
+            h.r[k] = cholesky.solve_lower(&rows.jacobian[k]);
         }
+        for_each_joint!(k, {
+            if k < count {
+                h.eliminate::<k>();
+                for row in k + 1..count {
+                    let mut below = h.r[row];
+                    h.reflect::<k>(&mut below);
+                    h.r[row] = below;
+                }
+            }
+        });
         h
     }
 
-    /// The reflection that leaves `row` zero behind entry k.
+    /// The reflection that leaves row `K` zero behind entry `K`.
     #[inline(always)]
-    fn eliminate(&mut self, k: usize, mut row: JointVector<T>) {
+    fn eliminate<const K: usize>(&mut self) {
+        let row = self.r[K];
         let mut norm_squared = T::ZERO;
-        for i in k..DOF {
+        for i in K..DOF {
             norm_squared += row[i] * row[i];
         }
         let norm = norm_squared.square_root();
-        let pivot = -norm.with_sign_of(row[k]);
+        let pivot = -norm.with_sign_of(row[K]);
         let resolvable = norm_squared >= T::from_f64(RANK_THRESHOLD);
         // Below this a row is zero in either precision: no reflection.
         let turns = norm_squared > T::from_f64(1e-30);
 
-        let mut reflector: JointVector<T> = zeros();
-        for i in k..DOF {
-            reflector[i] = row[i];
-            row[i] = T::ZERO;
+        for i in K..DOF {
+            self.reflector[K][i] = row[i];
+            self.r[K][i] = T::ZERO;
         }
-        reflector[k] -= pivot;
-        row[k] = pivot;
-        let scale = norm * (norm + (pivot + reflector[k]).magnitude());
-        self.scale[k] = if turns { T::ONE / scale } else { T::ZERO };
-        self.inverse_pivot[k] = if resolvable { T::ONE / pivot } else { T::ZERO };
-        self.deficient.set_if(k, !resolvable);
-        self.reflector[k] = reflector;
-        self.r[k] = row;
+        let head = row[K] - pivot;
+        self.reflector[K][K] = head;
+        self.r[K][K] = pivot;
+        // Divisors are made harmless before the division: no branch.
+        let scale = norm * (norm + (pivot + head).magnitude());
+        let one = T::ONE;
+        let inverse_scale = one / if turns { scale } else { one };
+        let inverse_pivot = one / if resolvable { pivot } else { one };
+        self.scale[K] = if turns { inverse_scale } else { T::ZERO };
+        self.inverse_pivot[K] = if resolvable { inverse_pivot } else { T::ZERO };
+        self.deficient.set_if(K, !resolvable);
     }
 
+    /// Applies H_K, which leaves entries before `K` as they are.
     #[inline(always)]
-    fn reflect(&self, k: usize, x: &mut JointVector<T>) {
-        let projection = self.reflector[k].dot(x) * self.scale[k];
-        *x -= self.reflector[k] * projection;
+    fn reflect<const K: usize>(&self, x: &mut JointVector<T>) {
+        let reflector = &self.reflector[K];
+        let mut projection = reflector[K] * x[K];
+        for i in K + 1..DOF {
+            projection += reflector[i] * x[i];
+        }
+        projection *= self.scale[K];
+        for i in K..DOF {
+            x[i] -= reflector[i] * projection;
+        }
     }
 
     /// Number of task rows m.
@@ -140,11 +156,11 @@ impl<T: Real> Hierarchy<T> {
     #[inline]
     pub fn rotate(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut x = *x;
-        for k in 0..MAX_ROWS {
+        for_each_joint!(k, {
             if k < self.count {
-                self.reflect(k, &mut x);
+                self.reflect::<k>(&mut x);
             }
-        }
+        });
         x
     }
 
@@ -153,11 +169,11 @@ impl<T: Real> Hierarchy<T> {
     #[inline]
     pub fn rotate_back(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut x = *x;
-        for k in (0..MAX_ROWS).rev() {
+        for_each_joint!(rev k, {
             if k < self.count {
-                self.reflect(k, &mut x);
+                self.reflect::<k>(&mut x);
             }
-        }
+        });
         x
     }
 
@@ -187,10 +203,15 @@ impl<T: Real> Hierarchy<T> {
     #[inline]
     pub fn solve(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for k in 0..MAX_ROWS {
-            let known = self.r[k].dot(&y);
-            y[k] = (b[k] - known) * self.inverse_pivot[k];
-        }
+        for_each_joint!(k, {
+            if k < self.count {
+                let mut rest = b[k];
+                for j in 0..k {
+                    rest -= self.r[k][j] * y[j];
+                }
+                y[k] = rest * self.inverse_pivot[k];
+            }
+        });
         y
     }
 
@@ -218,11 +239,15 @@ impl<T: Real> Hierarchy<T> {
     pub fn solve_transposed(&self, s: &JointVector<T>) -> [T; MAX_ROWS] {
         let mut rest = *s;
         let mut x = [T::ZERO; MAX_ROWS];
-        for k in (0..MAX_ROWS).rev() {
-            let value = rest[k] * self.inverse_pivot[k];
-            x[k] = value;
-            rest -= self.r[k] * value;
-        }
+        for_each_joint!(rev k, {
+            if k < self.count {
+                let value = rest[k] * self.inverse_pivot[k];
+                x[k] = value;
+                for j in 0..k {
+                    rest[j] -= self.r[k][j] * value;
+                }
+            }
+        });
         x
     }
 }

@@ -17,6 +17,9 @@ pub type JointMatrix<T> = SMatrix<T, DOF, DOF>;
 /// A vector in Cartesian space, base-plate axes unless said otherwise.
 pub type Vector3<T> = SVector<T, 3>;
 
+/// Four numbers that are treated alike: what a vector unit does at once.
+pub(crate) type Lanes<T> = SVector<T, 4>;
+
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
 
@@ -24,6 +27,50 @@ pub type Matrix3<T> = SMatrix<T, 3, 3>;
 #[must_use]
 pub const fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[T::ZERO; R]; C]))
+}
+
+/// Length of the loops over elementary functions of all joints. Vector units do a
+/// whole number of fours, so an eighth value is cheaper than seven; without one it
+/// would be wasted. The results are the same.
+const ALIKE: usize = if cfg!(target_arch = "arm") { DOF } else { 8 };
+
+/// Sine and cosine of every angle \[rad\].
+#[inline(always)]
+pub(crate) fn sines_cosines<T: Real>(q: &JointVector<T>) -> (JointVector<T>, JointVector<T>) {
+    let mut sines = padded(q);
+    let mut cosines = [T::ZERO; ALIKE];
+    for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+        (*sine, *cosine) = sine.sine_cosine();
+    }
+    (cut(&sines), cut(&cosines))
+}
+
+/// exp(-x) of every x >= 0.
+#[inline(always)]
+pub(crate) fn exponentials<T: Real>(x: &JointVector<T>) -> JointVector<T> {
+    let mut values = padded(x);
+    for value in &mut values {
+        *value = value.exp_negative();
+    }
+    cut(&values)
+}
+
+#[inline(always)]
+fn padded<T: Real>(x: &JointVector<T>) -> [T; ALIKE] {
+    let mut values = [T::ZERO; ALIKE];
+    for i in 0..DOF {
+        values[i] = x[i];
+    }
+    values
+}
+
+#[inline(always)]
+fn cut<T: Real>(values: &[T; ALIKE]) -> JointVector<T> {
+    let mut vector = zeros();
+    for i in 0..DOF {
+        vector[i] = values[i];
+    }
+    vector
 }
 
 /// A diagonal joint-space matrix: the usual form of stiffness and damping.

@@ -1,8 +1,9 @@
 //! Frames, joint axes and their rates, from one pass over the chain; points on
 //! any link with position, velocity and Jacobian rows.
 
-use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
-use crate::model::ArmModel;
+use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, sines_cosines, zeros};
+use crate::linalg::for_each_joint;
+use crate::model::{ArmModel, Twist};
 use crate::real::Real;
 
 /// Frames 0 (fixed) to 7 (flange side).
@@ -41,10 +42,16 @@ pub struct Kinematics<T: Real> {
     pub angular_velocity: [Vector3<T>; FRAMES],
     /// Velocity of the origin of frame i, carried by link i \[m/s\].
     pub origin_velocity: [Vector3<T>; FRAMES],
-    /// Axis of joint i + 1, unit vector (z of frame i).
-    pub axis: [Vector3<T>; DOF],
-    /// Time derivative of the axis of joint i + 1 \[1/s\].
-    pub axis_rate: [Vector3<T>; DOF],
+    /// Axes of the joints, unit vectors (z of frame i for joint i + 1), by rows x, y, z.
+    pub axis: [JointVector<T>; 3],
+    /// Time derivatives of the axes \[1/s\], by rows x, y, z.
+    pub axis_rate: [JointVector<T>; 3],
+    /// `origin` of the frames of the joints' axes and its velocity, by rows.
+    joint_origin: [JointVector<T>; 3],
+    joint_velocity: [JointVector<T>; 3],
+    /// Sine and cosine of q, for the dynamics.
+    pub(crate) sine: JointVector<T>,
+    pub(crate) cosine: JointVector<T>,
 }
 
 /// A point of the arm at one instant.
@@ -81,37 +88,60 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn new(model: &ArmModel<T>, state: &JointState<T>) -> Self {
         let zero = Vector3::from([T::ZERO; 3]);
+        let (sine, cosine) = sines_cosines(&state.q);
         let mut k = Self {
-            rotation: [zeros(); FRAMES],
+            rotation: [Matrix3::identity(); FRAMES],
             origin: [zero; FRAMES],
             angular_velocity: [zero; FRAMES],
             origin_velocity: [zero; FRAMES],
-            axis: [zero; DOF],
-            axis_rate: [zero; DOF],
+            axis: [zeros(); 3],
+            axis_rate: [zeros(); 3],
+            joint_origin: [zeros(); 3],
+            joint_velocity: [zeros(); 3],
+            sine,
+            cosine,
         };
-        k.rotation[0] = Matrix3::identity();
         k.origin[0].z = model.base_height;
-        for i in 0..DOF {
+        let [mut x, mut y, mut z] = [
+            [T::ONE, T::ZERO, T::ZERO],
+            [T::ZERO, T::ONE, T::ZERO],
+            [T::ZERO, T::ZERO, T::ONE],
+        ]
+        .map(Vector3::from);
+        let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
+        for_each_joint!(i, {
             let link = &model.links[i];
-            let (sin, cos) = state.q[i].sine_cosine();
-            let x = k.rotation[i].column(0).into_owned();
-            let y = k.rotation[i].column(1).into_owned();
-            let z = k.rotation[i].column(2).into_owned();
-            let new_x = x * cos + y * sin;
+            let (sin, cos) = (k.sine[i], k.cosine[i]);
+            let axis_rate = spin.cross(&z);
+            for row in 0..3 {
+                k.axis[row][i] = z[row];
+                k.axis_rate[row][i] = axis_rate[row];
+                k.joint_origin[row][i] = origin[row];
+                k.joint_velocity[row][i] = velocity[row];
+            }
+            spin += z * state.dq[i];
             let turned_y = y * cos - x * sin;
-            let arm = new_x * link.a + z * link.d;
-            let spin = k.angular_velocity[i] + z * state.dq[i];
-            k.axis[i] = z;
-            k.axis_rate[i] = k.angular_velocity[i].cross(&z);
-            k.rotation[i + 1] = Matrix3::from_columns(&[
-                new_x,
-                turned_y * link.cos_alpha + z * link.sin_alpha,
-                z * link.cos_alpha - turned_y * link.sin_alpha,
-            ]);
-            k.origin[i + 1] = k.origin[i] + arm;
+            x = x * cos + y * sin;
+            // The way to the next origin, most often none.
+            if link.a != T::ZERO || link.d != T::ZERO {
+                let arm = x * link.a + z * link.d;
+                origin += arm;
+                velocity += spin.cross(&arm);
+            }
+            (y, z) = match link.twist.0 {
+                Twist::NONE => (turned_y, z),
+                Twist::RIGHT => (z, -turned_y),
+                Twist::LEFT => (-z, turned_y),
+                _ => (
+                    turned_y * link.cos_alpha + z * link.sin_alpha,
+                    z * link.cos_alpha - turned_y * link.sin_alpha,
+                ),
+            };
+            k.rotation[i + 1] = Matrix3::from_columns(&[x, y, z]);
+            k.origin[i + 1] = origin;
             k.angular_velocity[i + 1] = spin;
-            k.origin_velocity[i + 1] = k.origin_velocity[i] + spin.cross(&arm);
-        }
+            k.origin_velocity[i + 1] = velocity;
+        });
         k
     }
 
@@ -138,22 +168,21 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     #[inline]
     pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> JacobianRows<T> {
+        let lever = difference(&motion.x, &self.joint_origin);
+        let lever_rate = difference(&motion.dx, &self.joint_velocity);
         let mut rows = JacobianRows {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
-        for i in 0..DOF {
-            if i < link {
-                let lever = motion.x - self.origin[i];
-                let lever_rate = motion.dx - self.origin_velocity[i];
-                let column = self.axis[i].cross(&lever);
-                let column_rate = self.axis_rate[i].cross(&lever) + self.axis[i].cross(&lever_rate);
-                for axis in 0..3 {
-                    rows.jacobian[axis][i] = column[axis];
-                    rows.jacobian_dot[axis][i] = column_rate[axis];
-                }
+        for (row, [y, z]) in [[1, 2], [2, 0], [0, 1]].into_iter().enumerate() {
+            let (axis, rate) = (&self.axis, &self.axis_rate);
+            for i in 0..DOF {
+                rows.jacobian[row][i] = axis[y][i] * lever[z][i] - axis[z][i] * lever[y][i];
+                rows.jacobian_dot[row][i] = (rate[y][i] * lever[z][i] - rate[z][i] * lever[y][i])
+                    + (axis[y][i] * lever_rate[z][i] - axis[z][i] * lever_rate[y][i]);
             }
         }
+        rows.cut(link);
         rows
     }
 
@@ -174,17 +203,35 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn angular_jacobian(&self, link: usize) -> JacobianRows<T> {
         let mut rows = JacobianRows {
-            jacobian: [zeros(); 3],
-            jacobian_dot: [zeros(); 3],
+            jacobian: self.axis,
+            jacobian_dot: self.axis_rate,
         };
-        for i in 0..DOF {
-            if i < link {
-                for axis in 0..3 {
-                    rows.jacobian[axis][i] = self.axis[i][axis];
-                    rows.jacobian_dot[axis][i] = self.axis_rate[i][axis];
-                }
-            }
-        }
+        rows.cut(link);
         rows
     }
+}
+
+impl<T: Real> JacobianRows<T> {
+    /// Joints behind `link` do not move it.
+    #[inline(always)]
+    fn cut(&mut self, link: usize) {
+        for i in link..DOF {
+            for row in 0..3 {
+                self.jacobian[row][i] = T::ZERO;
+                self.jacobian_dot[row][i] = T::ZERO;
+            }
+        }
+    }
+}
+
+/// One vector less that of every joint, by rows.
+#[inline(always)]
+fn difference<T: Real>(one: &Vector3<T>, each: &[JointVector<T>; 3]) -> [JointVector<T>; 3] {
+    let mut rows = [zeros(); 3];
+    for row in 0..3 {
+        for i in 0..DOF {
+            rows[row][i] = one[row] - each[row][i];
+        }
+    }
+    rows
 }

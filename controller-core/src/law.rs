@@ -116,7 +116,8 @@ impl<T: Real> Command<T> {
         posture: &JointVector<T>,
     ) -> Self {
         let mut transport: JointVector<T> = zeros();
-        for (row, &momentum) in rows.jacobian_dot.iter().zip(&motion.task_momentum) {
+        let used = rows.jacobian_dot.iter().take(rows.count);
+        for (row, &momentum) in used.zip(&motion.task_momentum) {
             transport += row * momentum;
         }
         Self {
@@ -174,16 +175,16 @@ impl<T: Real> TorqueDemand<T> {
         let Cycle {
             dynamics,
             hierarchy,
+            command,
             ..
         } = cycle;
-        let whitened = Self::whitened(cycle, residual);
-        Self(
-            dynamics
-                .cholesky
-                .lower_times(&hierarchy.rotate_back(&whitened))
-                + dynamics.coriolis
-                + dynamics.gravity,
-        )
+        // L Q_n^T Q_n L^-1 f = f - L Q_t^T Q_t L^-1 f: one way there and back for both.
+        let cholesky = &dynamics.cholesky;
+        let force = command.null_force;
+        let task = hierarchy.rotate(&cholesky.solve_lower(&(force + residual)));
+        let whitened = hierarchy.task_part(&(command.task_acceleration - task));
+        let torque = cholesky.lower_times(&hierarchy.rotate_back(&whitened));
+        Self(torque + force + dynamics.coriolis + dynamics.gravity)
     }
 
     /// The demand less C dq + g in the coordinates of Q: entries 0..m belong to

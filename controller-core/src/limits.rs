@@ -1,9 +1,9 @@
 //! The last stage: a demanded torque becomes one that may reach the motors.
 
 use crate::fault::{Fault, FaultKind, Flags, Quantity};
-use crate::joint::JointVector;
+use crate::joint::{DOF, JointVector};
 use crate::law::TorqueDemand;
-use crate::measurement::finite;
+use crate::measurement::{all_finite, finite};
 use crate::real::Real;
 
 /// A finite torque within the limits of the arm.
@@ -26,16 +26,16 @@ impl<T: Real> TorqueCommand<T> {
             torque: demand.0,
             saturated: Flags::NONE,
         };
-        for (index, (torque, &limit)) in command.torque.iter_mut().zip(limit).enumerate() {
-            finite(
-                FaultKind::NonFiniteTorque,
-                Quantity::Torque,
-                index as u8 + 1,
-                *torque,
-            )?;
-            let cut = torque.limited(-limit, limit);
-            command.saturated.set_if(index, cut != *torque);
-            *torque = cut;
+        if !all_finite(demand.0.iter()) {
+            for (index, &torque) in (1..).zip(&demand.0) {
+                finite(FaultKind::NonFiniteTorque, Quantity::Torque, index, torque)?;
+            }
+        }
+        for index in 0..DOF {
+            let torque = demand.0[index];
+            let cut = torque.limited(-limit[index], limit[index]);
+            command.torque[index] = cut;
+            command.saturated.0 |= u8::from(cut != torque) << index;
         }
         Ok(command)
     }

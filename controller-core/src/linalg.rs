@@ -5,6 +5,25 @@
 use crate::joint::{DOF, JointMatrix, JointVector, zeros};
 use crate::real::Real;
 
+/// Repeats a block with the index as a constant: triangular loops inside it get
+/// fixed lengths, which the compiler then lays out without counters.
+macro_rules! for_each_joint {
+    ($index:ident, $body:block) => {
+        for_each_joint!(@ $index, [0 1 2 3 4 5 6], $body)
+    };
+    (rev $index:ident, $body:block) => {
+        for_each_joint!(@ $index, [6 5 4 3 2 1 0], $body)
+    };
+    (@ $index:ident, [$($value:literal)*], $body:block) => {
+        $({
+            #[allow(non_upper_case_globals)]
+            const $index: usize = $value;
+            $body
+        })*
+    };
+}
+pub(crate) use for_each_joint;
+
 /// A = L L^T with L lower triangular; A symmetric, positive definite, 7 x 7.
 #[derive(Clone, Copy, Debug)]
 pub struct Cholesky<T: Real> {
@@ -25,7 +44,7 @@ impl<T: Real> Cholesky<T> {
         let mut l = zeros();
         let mut inverse_diagonal: JointVector<T> = zeros();
         let floor = T::from_f64(1e-30);
-        for j in 0..DOF {
+        for_each_joint!(j, {
             let mut column: JointVector<T> = zeros();
             for i in j..DOF {
                 column[i] = a[(i, j)];
@@ -43,7 +62,7 @@ impl<T: Real> Cholesky<T> {
             for i in j + 1..DOF {
                 l[(i, j)] = column[i] * inverse;
             }
-        }
+        });
         Self {
             l,
             inverse_diagonal,
@@ -89,13 +108,13 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn solve_lower(&self, b: &JointVector<T>) -> JointVector<T> {
         let mut x = *b;
-        for j in 0..DOF {
+        for_each_joint!(j, {
             let value = x[j] * self.inverse_diagonal[j];
             x[j] = value;
             for i in j + 1..DOF {
                 x[i] -= self.l[(i, j)] * value;
             }
-        }
+        });
         x
     }
 
@@ -104,13 +123,13 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn solve_upper(&self, b: &JointVector<T>) -> JointVector<T> {
         let mut x = *b;
-        for i in (0..DOF).rev() {
+        for_each_joint!(rev i, {
             let mut value = x[i];
             for j in i + 1..DOF {
                 value -= self.l[(j, i)] * x[j];
             }
             x[i] = value * self.inverse_diagonal[i];
-        }
+        });
         x
     }
 
@@ -119,11 +138,11 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for j in 0..DOF {
+        for_each_joint!(j, {
             for i in j..DOF {
                 y[i] += self.l[(i, j)] * x[j];
             }
-        }
+        });
         y
     }
 
@@ -132,11 +151,11 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn upper_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for i in 0..DOF {
+        for_each_joint!(i, {
             for j in i..DOF {
                 y[i] += self.l[(j, i)] * x[j];
             }
-        }
+        });
         y
     }
 

@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use crate::fault::{Fault, FaultKind, Quantity};
-use crate::joint::{JointState, JointVector, zeros};
+use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::model::ArmModel;
 use crate::real::Real;
 use crate::task::{MAX_LEVELS, TaskReference};
@@ -69,30 +69,36 @@ pub(crate) fn plausible<T: Real>(
     cycle_s: T,
     measurement: &Measurement<T>,
 ) -> Result<JointState<T>, Fault> {
-    let Measurement { q, dq, interval_s } = *measurement;
+    let Measurement { q, dq, interval_s } = measurement;
     let margin = T::from_f64(POSITION_MARGIN);
     let factor = T::from_f64(SPEED_FACTOR);
-    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(model.position_limit())) {
-        within(
-            Quantity::Position,
-            index,
-            value,
-            -(limit + margin),
-            limit + margin,
-        )?;
-    }
-    for (index, (&value, &limit)) in (1..).zip(dq.iter().zip(model.speed_limit())) {
-        within(
-            Quantity::Speed,
-            index,
-            value,
-            -(limit * factor),
-            limit * factor,
-        )?;
-    }
     let [low, high] = INTERVAL_FACTORS.map(|factor| T::from_f64(factor) * cycle_s);
-    within(Quantity::Interval, 0, interval_s, low, high)?;
-    Ok(JointState { q, dq })
+    let (positions, speeds) = (model.position_limit(), model.speed_limit());
+    // All at once first; which one it is matters only then. False for NaN as well.
+    let mut believed = (*interval_s >= low) & (*interval_s <= high);
+    for i in 0..DOF {
+        believed &= q[i].magnitude() <= positions[i] + margin;
+        believed &= dq[i].magnitude() <= speeds[i] * factor;
+    }
+    if believed {
+        return Ok(JointState { q: *q, dq: *dq });
+    }
+    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(positions)) {
+        let limit = limit + margin;
+        within(Quantity::Position, index, value, -limit, limit)?;
+    }
+    for (index, (&value, &limit)) in (1..).zip(dq.iter().zip(speeds)) {
+        let limit = limit * factor;
+        within(Quantity::Speed, index, value, -limit, limit)?;
+    }
+    within(Quantity::Interval, 0, *interval_s, low, high)?;
+    Ok(JointState { q: *q, dq: *dq })
+}
+
+/// Whether every value is finite: x - x is 0 where x is, else NaN, which no sum loses.
+#[inline(always)]
+pub(crate) fn all_finite<'a, T: Real>(values: impl Iterator<Item = &'a T>) -> bool {
+    values.fold(T::ZERO, |sum, &x| sum + (x - x)) == T::ZERO
 }
 
 /// Checks that a reference has `levels` entries and only finite numbers.
@@ -115,22 +121,18 @@ pub(crate) fn usable<T: Real>(reference: &Reference<T>, levels: usize) -> Result
         let norm_squared = task.orientation.dot(&task.orientation);
         let [low, high] = QUATERNION_NORMS.map(|norm| T::from_f64(norm * norm));
         within(Quantity::Orientation, index, norm_squared, low, high)?;
-        for &value in task.x.iter().chain(&task.dx).chain(&task.ddx) {
-            finite(
-                FaultKind::Implausible,
-                Quantity::TaskReference,
-                index,
-                value,
-            )?;
+        if !all_finite(task.x.iter().chain(&task.dx).chain(&task.ddx)) {
+            for &value in task.x.iter().chain(&task.dx).chain(&task.ddx) {
+                let quantity = Quantity::TaskReference;
+                finite(FaultKind::Implausible, quantity, index, value)?;
+            }
         }
     }
-    for (index, &value) in (1..).zip(&reference.posture) {
-        finite(
-            FaultKind::Implausible,
-            Quantity::PostureReference,
-            index,
-            value,
-        )?;
+    if !all_finite(reference.posture.iter()) {
+        for (index, &value) in (1..).zip(&reference.posture) {
+            let quantity = Quantity::PostureReference;
+            finite(FaultKind::Implausible, quantity, index, value)?;
+        }
     }
     Ok(())
 }

@@ -10,7 +10,7 @@ mod lwr_iv;
 
 use core::fmt;
 
-use crate::joint::{DOF, JointVector, Matrix3, Vector3};
+use crate::joint::{DOF, JointVector, Lanes, Vector3};
 use crate::real::Real;
 
 pub use lwr_iv::{LWR_IV, LWR_IV_POINTS};
@@ -127,25 +127,58 @@ impl fmt::Display for ModelError {
 
 impl core::error::Error for ModelError {}
 
+/// What a link does to what is carried over it: right angles of twist without a
+/// length a only exchange axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Twist(pub u8);
+
+impl Twist {
+    pub const NONE: u8 = 0;
+    /// + 90 deg.
+    pub const RIGHT: u8 = 1;
+    /// - 90 deg.
+    pub const LEFT: u8 = 2;
+    pub const OTHER: u8 = 3;
+
+    fn new(sine: f64, cosine: f64, a: f64) -> Self {
+        let (zero, one) = (0.0, 1.0);
+        Self(if a != zero {
+            Self::OTHER
+        } else if (sine, cosine) == (zero, one) {
+            Self::NONE
+        } else if (sine, cosine) == (one, zero) {
+            Self::RIGHT
+        } else if (sine, cosine) == (-one, zero) {
+            Self::LEFT
+        } else {
+            Self::OTHER
+        })
+    }
+}
+
 /// One link as the algorithms read it.
+///
+/// Its moments are about the origin of the frame of its joint and in axes that
+/// turn with the link, z along the joint ([`crate::spatial`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Link<T: Real> {
     pub a: T,
     pub d: T,
     pub cos_alpha: T,
     pub sin_alpha: T,
-    pub mass: T,
-    /// First moment of mass m c \[kg m\] about the DH frame's origin, link axes.
-    pub first_moment: Vector3<T>,
-    /// Second moment of mass, integral of p p^T dm \[kg m2\], about the DH
-    /// frame's origin, link axes. The inertia tensor is tr(S) 1 - S.
-    pub second_moment: Matrix3<T>,
+    pub twist: Twist,
+    /// Integral of (p, 1) (p, 1)^T dm by rows: the second moment S \[kg m2\] with the
+    /// first moment h \[kg m\] behind and below it, and the mass \[kg\]. The inertia
+    /// tensor is tr(S) 1 - S.
+    pub moments: [Lanes<T>; 4],
 }
 
 /// A validated arm model. Immutable; shared by any number of controllers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmModel<T: Real> {
     pub(crate) links: [Link<T>; DOF],
+    /// Before the first joint: no length, no twist, no mass.
+    pub(crate) base: Link<T>,
     pub(crate) base_height: T,
     pub(crate) gravity: Vector3<T>,
     position_limit: JointVector<T>,
@@ -169,6 +202,7 @@ impl<T: Real> ArmModel<T> {
         };
         Ok(Self {
             links: parameters.links.map(|link| Link::new(&link)),
+            base: Link::fixed(),
             base_height: T::from_f64(parameters.base_height),
             gravity: vector(parameters.gravity),
             position_limit: column(|link| link.position_limit),
@@ -205,19 +239,41 @@ impl<T: Real> ArmModel<T> {
 
 impl<T: Real> Link<T> {
     fn new(link: &LinkParameters) -> Self {
-        let com = nalgebra::Vector3::from(link.com);
-        let second_moment = second_moment(link);
         // Right angles are exact here, so that zeros of the geometry stay zeros.
         let (sin_alpha, cos_alpha) = link.alpha.sine_cosine();
         let exact = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+        let (sin_alpha, cos_alpha) = (exact(sin_alpha), exact(cos_alpha));
+        let turn = nalgebra::Matrix3::new(
+            1.0, 0.0, 0.0, 0.0, cos_alpha, -sin_alpha, 0.0, sin_alpha, cos_alpha,
+        );
+        let com =
+            turn * nalgebra::Vector3::from(link.com) + nalgebra::Vector3::new(link.a, 0.0, link.d);
+        let s = turn * second_moment(link) * turn.transpose() + com * com.transpose() * link.mass;
+        let h = com * link.mass;
         Self {
             a: T::from_f64(link.a),
             d: T::from_f64(link.d),
-            cos_alpha: T::from_f64(exact(cos_alpha)),
-            sin_alpha: T::from_f64(exact(sin_alpha)),
-            mass: T::from_f64(link.mass),
-            first_moment: (com * link.mass).map(T::from_f64),
-            second_moment: (second_moment + com * com.transpose() * link.mass).map(T::from_f64),
+            cos_alpha: T::from_f64(cos_alpha),
+            sin_alpha: T::from_f64(sin_alpha),
+            twist: Twist::new(sin_alpha, cos_alpha, link.a),
+            moments: [
+                Lanes::from([s.m11, s.m12, s.m13, h.x].map(T::from_f64)),
+                Lanes::from([s.m12, s.m22, s.m23, h.y].map(T::from_f64)),
+                Lanes::from([s.m13, s.m23, s.m33, h.z].map(T::from_f64)),
+                Lanes::from([h.x, h.y, h.z, link.mass].map(T::from_f64)),
+            ],
+        }
+    }
+
+    fn fixed() -> Self {
+        let zero = T::ZERO;
+        Self {
+            a: zero,
+            d: zero,
+            cos_alpha: T::ONE,
+            sin_alpha: zero,
+            twist: Twist(Twist::NONE),
+            moments: [Lanes::from([zero; 4]); 4],
         }
     }
 }

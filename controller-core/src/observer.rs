@@ -16,7 +16,7 @@
 
 use crate::config::DEAD_CYCLES_MAX;
 use crate::dynamics::Dynamics;
-use crate::joint::{JointState, JointVector, zeros};
+use crate::joint::{DOF, JointState, JointVector, exponentials, zeros};
 use crate::real::Real;
 
 /// What the observer remembers from the previous cycle.
@@ -60,10 +60,10 @@ impl<T: Real> Observer<T> {
         if self.started {
             let rate = T::ONE / interval_s;
             let innovation = (momentum - self.momentum) * rate - self.input;
-            let joints = self.residual.iter_mut().zip(gain.iter().zip(&innovation));
-            for (residual, (&gain, &innovation)) in joints {
-                let decay = (gain * interval_s).exp_negative();
-                *residual = decay * *residual + (T::ONE - decay) * innovation;
+            let decay = exponentials(&(gain * interval_s));
+            for i in 0..DOF {
+                self.residual[i] =
+                    decay[i] * self.residual[i] + (T::ONE - decay[i]) * innovation[i];
             }
         }
         self.momentum = *momentum;

@@ -131,7 +131,7 @@ macro_rules! real {
                 $sqrt(self)
             }
 
-            #[inline]
+            #[inline(always)]
             fn sine_cosine(self) -> (Self, Self) {
                 // Adding and taking away 1.5 * 2^mantissa rounds to an integer,
                 // whose low bits are then the low bits of the sum.
@@ -162,7 +162,7 @@ macro_rules! real {
                 )
             }
 
-            #[inline]
+            #[inline(always)]
             fn exp_negative(self) -> Self {
                 let x = Real::limited(self, 0.0, $exp_range);
                 let shifted = x * -core::$float::consts::LOG2_E + $round;

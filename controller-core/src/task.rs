@@ -283,10 +283,14 @@ impl<T: Real> TaskRows<T> {
         for axis in 0..3 {
             let row = self.count;
             if task.axes.xyz[axis] && row < MAX_ROWS {
+                let mut bias = T::ZERO;
+                for i in 0..DOF {
+                    bias += point.jacobian_dot[axis][i] * state.dq[i];
+                }
                 self.level_start[row] = level_start;
                 self.jacobian[row] = point.jacobian[axis];
                 self.jacobian_dot[row] = point.jacobian_dot[axis];
-                self.bias[row] = point.jacobian_dot[axis].dot(&state.dq);
+                self.bias[row] = bias;
                 self.wanted[row] = wanted[axis];
                 self.error[row] = error[axis];
                 self.count = row + 1;

@@ -1,0 +1,185 @@
+//! What is measured: the controllers of the scenarios `two-level` ("2 levels",
+//! flange and null space) and `case-1` ("3 levels", flange, wrist in the plane
+//! and null space), in random and adversarial states.
+
+use controller_core::config::ControllerConfig;
+use controller_core::controller::Controller;
+use controller_core::joint::{JointState, JointVector, Vector3, diagonal};
+use controller_core::kinematics::LinkPoint;
+use controller_core::law::{NullDamping, NullSpace, Posture};
+use controller_core::measurement::{Measurement, Reference};
+use controller_core::model::{ArmModel, LWR_IV, LWR_IV_POINTS};
+use controller_core::real::Real;
+use controller_core::task::{Axes, Task, TaskReference};
+
+/// Random states, besides the adversarial ones.
+const RANDOM: usize = 2_000;
+
+/// One controller.
+pub struct Case<T: Real> {
+    pub name: String,
+    pub model: ArmModel<T>,
+    pub config: ControllerConfig<T>,
+    pub controller: Controller<T>,
+}
+
+/// One cycle's input, in double precision.
+#[derive(Clone, Copy)]
+pub struct Input {
+    pub kind: &'static str,
+    pub q: [f64; 7],
+    pub dq: [f64; 7],
+    pub interval_s: f64,
+    /// Reference of a level: where it is, plus this \[m\], and speeds of this size.
+    pub offset: f64,
+    /// Absolute reference at the base: far away where `offset` is large.
+    pub posture: [f64; 7],
+}
+
+/// The controller with two or three levels, the null space counted.
+pub fn levels<T: Real>(count: usize) -> Case<T> {
+    let model = ArmModel::<T>::new(&LWR_IV).expect("the built-in arm");
+    let point = |name| {
+        let point = LWR_IV_POINTS.iter().find(|point| point.name == name);
+        let point = point.expect("a point of the arm");
+        LinkPoint {
+            link: point.link,
+            offset: Vector3::from(point.offset.map(T::from_f64)),
+        }
+    };
+    let tasks = [
+        Task::uniform(point("flange"), Axes::XYZ, 400.0, 40.0),
+        Task::uniform(point("wrist"), Axes::XY, 400.0, 40.0),
+    ];
+    let config = ControllerConfig {
+        tasks: tasks.into_iter().take(count - 1).collect(),
+        null_space: NullSpace {
+            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
+            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
+            posture: Posture::Constant,
+        },
+        observer_gain: JointVector::repeat(T::from_f64(50.0)),
+        cycle_s: T::from_f64(0.002),
+        dead_cycles: 0,
+    };
+    Case {
+        name: format!("{count}-levels-{}", std::any::type_name::<T>()),
+        controller: Controller::new(&model, &config).expect("a valid configuration"),
+        model,
+        config,
+    }
+}
+
+impl<T: Real> Case<T> {
+    pub fn joints(&self, input: &Input) -> JointState<T> {
+        JointState {
+            q: JointVector::from(input.q.map(T::from_f64)),
+            dq: JointVector::from(input.dq.map(T::from_f64)),
+        }
+    }
+
+    pub fn typed(&self, input: &Input) -> (Measurement<T>, Reference<T>) {
+        let JointState { q, dq } = self.joints(input);
+        let mut reference = self.controller.rest(&q);
+        let offset = T::from_f64(input.offset);
+        for task in &mut reference.tasks {
+            *task = TaskReference {
+                x: task.x.map(|x| x + offset),
+                dx: Vector3::repeat(offset),
+                ddx: Vector3::repeat(offset),
+                ..*task
+            };
+        }
+        reference.posture = JointVector::from(input.posture.map(T::from_f64));
+        let measurement = Measurement {
+            q,
+            dq,
+            interval_s: T::from_f64(input.interval_s),
+        };
+        (measurement, reference)
+    }
+}
+
+/// Uniform in -1 .. 1, from a linear congruential generator (Knuth's MMIX).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn joints(&mut self, scale: impl Fn(usize) -> f64) -> [f64; 7] {
+        std::array::from_fn(|i| self.unit() * scale(i))
+    }
+}
+
+/// Random states over the whole range of the joints, then what is hard: singular,
+/// at rest, at the border of what is believed, denormal, saturated.
+pub fn states() -> Vec<Input> {
+    let mut random = Random(1);
+    let position = |i: usize| LWR_IV.links[i].position_limit;
+    let speed = |i: usize| LWR_IV.links[i].speed_limit;
+    let mut states: Vec<Input> = (0..RANDOM)
+        .map(|_| Input {
+            kind: "random",
+            q: random.joints(position),
+            dq: random.joints(speed),
+            interval_s: 0.002 * (1.0 + 0.4 * random.unit()),
+            offset: 0.05 * random.unit(),
+            posture: random.joints(position),
+        })
+        .collect();
+    let rest = Input {
+        kind: "adversarial",
+        q: [0.0; 7],
+        dq: [0.0; 7],
+        interval_s: 0.002,
+        offset: 0.0,
+        posture: [0.0; 7],
+    };
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let postures = [
+        [0.0; 7],
+        [-0.0; 7],
+        [0.0, 0.0, 0.0, quarter, 0.0, 0.0, 0.0],
+        [0.0, quarter, 0.0, 0.0, 0.0, -quarter, 0.0],
+        [quarter; 7],
+        [1e-310; 7],
+        [1e-9, -1e-9, 1e-9, -1e-9, 1e-9, -1e-9, 1e-9],
+        std::array::from_fn(|i| position(i) + 0.19),
+        std::array::from_fn(|i| -position(i) - 0.19),
+        [0.0, 0.611, 0.0, -1.396, 0.349, 1.047, 0.0],
+    ];
+    let speeds = [
+        [0.0; 7],
+        [-0.0; 7],
+        [1e-310; 7],
+        [-1e-160; 7],
+        std::array::from_fn(|i| speed(i) * 2.9),
+        std::array::from_fn(|i| speed(i) * if i % 2 == 0 { -2.9 } else { 2.9 }),
+    ];
+    for q in postures {
+        for dq in speeds {
+            for (interval_s, offset, far) in [
+                (0.002, 0.0, 0.0),
+                (0.0011, 1e-310, -0.0),
+                (0.039, 3.0, 10.0),
+                (0.002, -1e4, -1e4),
+            ] {
+                states.push(Input {
+                    q,
+                    dq,
+                    interval_s,
+                    offset,
+                    posture: [far; 7],
+                    ..rest
+                });
+            }
+        }
+    }
+    states
+}

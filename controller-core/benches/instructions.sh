@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Instructions of a control cycle on the host, counted by callgrind: whole cycles in
+# 2,000 random and 240 adversarial states, then each stage. Compares the largest
+# counts with instructions.txt beside this script; --update rewrites that file.
+#
+#   controller-core/benches/instructions.sh [--update]
+#
+# The counts are those of the machine code, so they belong to one compiler: a new one
+# may move them. More than 2 % above the committed figure, or a spread over the
+# inputs above 0.5 %, fails.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+committed=controller-core/benches/instructions.txt
+target="${CARGO_TARGET_DIR:-target}/count"
+export RUSTFLAGS="-C target-cpu=x86-64-v3"
+cargo build --quiet --release -p controller-core --example count_step --target-dir "$target"
+binary="$target/release/examples/count_step"
+if [ -n "${PATCH:-}" ]; then
+  python3 - "$binary" <<'PY'
+import re,sys
+b=open(sys.argv[1],'rb').read()
+n=len(re.findall(rb'\xc5\x79\xd6[\xc0-\xff]',b))
+b=re.sub(rb'\xc5\x79\xd6([\xc0-\xff])',lambda m:b'\xc5\x79\x29'+m.group(1),b)
+open(sys.argv[1]+'.patched','wb').write(b); print('patched',n)
+PY
+  binary="$binary.patched"; chmod +x "$binary"
+fi
+
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+
+# One part of the dump per call of the counted function.
+count() {
+  local what="$1" name="$2"
+  valgrind --tool=callgrind --callgrind-out-file="$work/out" --combine-dumps=yes \
+    --dump-line=no --toggle-collect="count_step::counted::$name" \
+    --dump-after="count_step::counted::$name" \
+    "$binary" "$what" > "$work/names" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
+  awk '/^desc: Trigger: --dump-after/ { wanted = 1 } /^(totals|summary):/ && wanted { print $2; wanted = 0 }' \
+    "$work/out" > "$work/counts"
+  if [ "$name" != step ]; then
+    grep " $name\$" "$work/names" > "$work/of_stage"
+    mv "$work/of_stage" "$work/names"
+  fi
+  if [ "$(wc -l < "$work/names")" != "$(wc -l < "$work/counts")" ]; then
+    echo "callgrind gave $(wc -l < "$work/counts") counts for $(wc -l < "$work/names") calls" >&2
+    exit 1
+  fi
+  paste -d' ' "$work/names" "$work/counts"
+  rm "$work/out"
+}
+{
+  count "${STEPS:-step}" step
+  for name in kinematics dynamics cholesky_inside_dynamics task_rows hierarchy motion command \
+    demand limits observer_update observer_apply; do
+    count stages "$name"
+  done
+} > "$work/all"
+
+awk '
+  $2 == "fault" { faults++; next }
+  {
+    stage = ($2 == "random" || $2 == "adversarial") ? "step" : $2
+    key = $1 " " stage
+    if (!(key in min)) { order[++n] = key; min[key] = max[key] = $3 }
+    if ($3 < min[key]) min[key] = $3
+    if ($3 > max[key]) max[key] = $3
+    count[key]++
+  }
+  END {
+    for (i = 1; i <= n; i++) {
+      key = order[i]
+      print key, max[key], min[key], count[key]
+    }
+    if (faults) print "faults", faults > "/dev/stderr"
+  }' "$work/all" > "$work/table"
+
+printf '%-14s %-26s %8s %8s %8s %7s\n' cycle stage max min 'spread %' inputs
+failed=0
+while read -r case stage max min count; do
+  spread=$(awk "BEGIN { printf \"%.2f\", 100 * ($max - $min) / $min }")
+  printf '%-14s %-26s %8d %8d %8s %7d\n' "$case" "$stage" "$max" "$min" "$spread" "$count"
+  [ "$stage" = step ] || continue
+  if awk "BEGIN { exit !($spread >= 0.5) }"; then
+    echo "  the instruction count depends on the data"
+    failed=1
+  fi
+  allowed=$(awk -v case="$case" '$1 == case { print int($2 * 1.02) }' "$committed" 2>/dev/null || true)
+  if [ "${1:-}" != --update ] && [ "$max" -gt "${allowed:-0}" ]; then
+    echo "  above the committed figure + 2 %: ${allowed:-none}"
+    failed=1
+  fi
+done < "$work/table"
+if [ "${1:-}" = --update ]; then
+  awk '$2 == "step" { print $1, $3 }' "$work/table" > "$committed"
+fi
+exit "$failed"
