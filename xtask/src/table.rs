@@ -49,9 +49,9 @@ Not measured. Assumed: cycle and constants in ITCM, controller, state and stack 
 ([memory.x](../memory.x)), no interrupt. Cycles per instruction are a guess between two
 borders: single precision 0.9 (some dual issue) to 2.0 (every result waited for); double
 precision 1.3 to 3.0, because its additions and multiplications occupy the FPU for more
-than one cycle. Divisions and square roots, up to about 30 cycles in double precision,
-are a few per cent of the instructions and inside the borders. From flash through the
-caches, or from AXI SRAM, it takes longer.
+than one cycle. Divisions and square roots take up to about 30 cycles in double precision;
+there are only some thirty per cycle of control, which the borders cover. From flash
+through the caches, or from AXI SRAM, it takes longer. A cycle with a fault is shorter.
 ";
 
 /// The page.

@@ -124,11 +124,14 @@ mod target {
         mps2::exit(complete)
     }
 
+    /// A full cycle behind a call.
+    type CycleOf<T> = fn(&mut Rig<T>, &Measurement<T>, &Reference<T>) -> Step<T>;
+
     fn measure<T: Number>(
         kind: JobKind,
         board: &Board,
         build: fn(JobKind) -> Option<Controller<T>>,
-        cycle: fn(&mut Rig<T>, &Measurement<T>, &Reference<T>) -> Step<T>,
+        cycle: CycleOf<T>,
     ) -> bool {
         let name = kind.name();
         let init = high_water(|| {
