@@ -1,8 +1,8 @@
 //! Control cycles for an instruction counter: `benches/instructions.sh` runs this
 //! under callgrind, which counts each call of a function in `counted` by itself.
 //!
-//! `count_step step` runs whole cycles in random and adversarial states, `count_step
-//! stages` every stage of the three-level cycle in a few of them. The order of the
+//! `count_step step` runs whole cycles in random and adversarial states (`quick`: a
+//! few), `count_step stages` every stage of the three-level cycle. The order of the
 //! calls is printed, one name per line.
 
 #![cfg(not(target_os = "none"))]
@@ -14,15 +14,10 @@ use std::hint::black_box;
 
 use cases::{Case, Input, levels, states};
 use controller_core::controller::ControllerState;
-use controller_core::dynamics::Dynamics;
-use controller_core::hierarchy::Hierarchy;
-use controller_core::kinematics::Kinematics;
-use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
-use controller_core::limits::TorqueCommand;
+use controller_core::law::Cycle;
 use controller_core::observer::Observer;
 use controller_core::real::Real;
 use controller_core::record::Recorder;
-use controller_core::task::TaskRows;
 
 /// What callgrind counts: every function here is one number.
 mod counted {
@@ -206,11 +201,6 @@ fn stages<T: Real>(case: &Case<T>, inputs: &[Input]) {
         }));
         let torque = counted::limits(black_box(&demand), model.torque_limit());
         counted::observer_apply(black_box(&mut observer), &dynamics, &joints, &torque);
-        black_box(TorqueCommand::new(&demand, model.torque_limit()).is_ok());
-        // Named types, so that a stage that goes missing is a compile error here.
-        let _: (Kinematics<T>, Dynamics<T>, TaskRows<T>, Hierarchy<T>) =
-            (kinematics, dynamics, rows, hierarchy);
-        let _: (TaskMotion<T>, Command<T>, TorqueDemand<T>) = (motion, command, demand);
         for stage in [
             "kinematics",
             "dynamics",
@@ -234,7 +224,7 @@ fn main() {
     if wanted == "stages" {
         let inputs = &states()[..16];
         stages(&levels::<f64>(3), inputs);
-        if wanted == "x" {}
+
         stages(&levels::<f32>(3), inputs);
     } else {
         let mut inputs = states();

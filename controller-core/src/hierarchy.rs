@@ -181,20 +181,27 @@ impl<T: Real> Hierarchy<T> {
     #[must_use]
     #[inline]
     pub fn task_part(&self, x: &JointVector<T>) -> JointVector<T> {
-        let mut part = *x;
-        for (k, value) in part.iter_mut().enumerate() {
-            if k >= self.count {
-                *value = T::ZERO;
-            }
-        }
-        part
+        self.joined(x, &zeros())
     }
 
     /// `x` with only its null-space entries m.. kept.
     #[must_use]
     #[inline]
     pub fn null_part(&self, x: &JointVector<T>) -> JointVector<T> {
-        x - self.task_part(x)
+        self.joined(&zeros(), x)
+    }
+
+    /// Entries 0..m of `task`, m.. of `null`.
+    #[must_use]
+    #[inline(always)]
+    pub fn joined(&self, task: &JointVector<T>, null: &JointVector<T>) -> JointVector<T> {
+        let mut joined = *null;
+        for k in 0..DOF {
+            if k < self.count {
+                joined[k] = task[k];
+            }
+        }
+        joined
     }
 
     /// y = R^-1 b, the coupled solution: what levels above do to a row is taken

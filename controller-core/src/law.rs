@@ -175,16 +175,12 @@ impl<T: Real> TorqueDemand<T> {
         let Cycle {
             dynamics,
             hierarchy,
-            command,
             ..
         } = cycle;
-        // L Q_n^T Q_n L^-1 f = f - L Q_t^T Q_t L^-1 f: one way there and back for both.
+        let whitened = Self::whitened(cycle, residual);
         let cholesky = &dynamics.cholesky;
-        let force = command.null_force;
-        let task = hierarchy.rotate(&cholesky.solve_lower(&(force + residual)));
-        let whitened = hierarchy.task_part(&(command.task_acceleration - task));
         let torque = cholesky.lower_times(&hierarchy.rotate_back(&whitened));
-        Self(torque + force + dynamics.coriolis + dynamics.gravity)
+        Self(torque + dynamics.coriolis + dynamics.gravity)
     }
 
     /// The demand less C dq + g in the coordinates of Q: entries 0..m belong to
@@ -200,10 +196,11 @@ impl<T: Real> TorqueDemand<T> {
             ..
         } = cycle;
         let cholesky = &dynamics.cholesky;
-        let task = hierarchy.task_part(&hierarchy.rotate(&cholesky.solve_lower(residual)));
-        let null =
-            hierarchy.null_part(&hierarchy.rotate(&cholesky.solve_lower(&command.null_force)));
-        command.task_acceleration - task + null
+        // Apart, so that what f asks of the tasks, much near a singularity, leaves no
+        // rounding in their entries.
+        let task = hierarchy.rotate(&cholesky.solve_lower(residual));
+        let null = hierarchy.rotate(&cholesky.solve_lower(&command.null_force));
+        hierarchy.joined(&(command.task_acceleration - task), &null)
     }
 }
 

@@ -15,7 +15,7 @@ macro_rules! for_each_joint {
         for_each_joint!(@ $index, [6 5 4 3 2 1 0], $body)
     };
     (@ $index:ident, [$($value:literal)*], $body:block) => {
-        $({
+        $(#[allow(clippy::reversed_empty_ranges)] {
             #[allow(non_upper_case_globals)]
             const $index: usize = $value;
             $body

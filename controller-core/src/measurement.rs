@@ -97,6 +97,7 @@ pub(crate) fn plausible<T: Real>(
 
 /// Whether every value is finite: x - x is 0 where x is, else NaN, which no sum loses.
 #[inline(always)]
+#[allow(clippy::eq_op)]
 pub(crate) fn all_finite<'a, T: Real>(values: impl Iterator<Item = &'a T>) -> bool {
     values.fold(T::ZERO, |sum, &x| sum + (x - x)) == T::ZERO
 }
