@@ -216,10 +216,9 @@ impl<T: Real> Controller<T> {
             None => plausible(&self.model, self.cycle_s, measurement),
         };
         let checked = entry
-            .and_then(|joints| usable(reference, self.tasks.len()).map(|()| joints))
-            .and_then(|joints| self.cycle(state, &joints, measurement.interval_s, reference, law));
+            .and_then(|joints| usable(reference, self.tasks.len()).map(|()| joints));
         match checked {
-            Ok(step) => step,
+            Ok(joints) => self.cycle(state, &joints, measurement.interval_s, reference, law),
             Err(fault) => state.held(fault),
         }
     }
@@ -233,11 +232,14 @@ impl<T: Real> Controller<T> {
         interval_s: T,
         reference: &Reference<T>,
         law: impl FnOnce(&Cycle<'_, T>) -> TorqueDemand<T>,
-    ) -> Result<Step<T>, Fault> {
+    ) -> Step<T> {
         let kinematics = Kinematics::new(&self.model, joints);
         let dynamics = Dynamics::new(&self.model, &kinematics, joints);
         let limit = self.model.torque_limit();
-        state.hold = TorqueCommand::new(&TorqueDemand(dynamics.gravity), limit)?.torque;
+        state.hold = match TorqueCommand::new(&TorqueDemand(dynamics.gravity), limit) {
+            Ok(command) => command.torque,
+            Err(fault) => return state.held(fault),
+        };
 
         let residual = state
             .observer
@@ -272,11 +274,14 @@ impl<T: Real> Controller<T> {
             command: &command,
             residual: &residual,
         });
-        let TorqueCommand { torque, saturated } = TorqueCommand::new(&demand, limit)?;
+        let TorqueCommand { torque, saturated } = match TorqueCommand::new(&demand, limit) {
+            Ok(command) => command,
+            Err(fault) => return state.held(fault),
+        };
 
         let acting = state.dead_time.send(self.dead_cycles, &torque, &state.hold);
         state.observer.apply(&dynamics, joints, &acting);
-        Ok(Step {
+        Step {
             torque,
             residual,
             gravity: dynamics.gravity,
@@ -286,6 +291,6 @@ impl<T: Real> Controller<T> {
                 saturated,
                 rank: hierarchy.deficient(),
             },
-        })
+        }
     }
 }

@@ -64,7 +64,6 @@ impl<T: Real> Dynamics<T> {
         let mut mass_matrix = zeros();
         let mut coriolis_matrix = zeros();
         let mut gravity: JointVector<T> = zeros();
-        let axis_rate = motion.map(|motion| AxisRate::new(&motion));
         let mut group = Moments::zero();
         for i in (0..DOF).rev() {
             if i < DOF - 1 {
@@ -74,7 +73,7 @@ impl<T: Real> Dynamics<T> {
             let [gx, gy, _] = motion[i].gravity;
             gravity[i] = gx * group.first[1] - gy * group.first[0];
 
-            let mut wrench = JointWrench::new(&group, &axis_rate[i]);
+            let mut wrench = JointWrench::new(&group, &AxisRate::new(&motion[i]));
             mass_matrix[(i, i)] = wrench.rows[2][0];
             coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
@@ -83,7 +82,7 @@ impl<T: Real> Dynamics<T> {
                 let AxisRate {
                     turn: [a, b],
                     slide: [u, v],
-                } = axis_rate[j];
+                } = AxisRate::new(&motion[j]);
                 mass_matrix[(i, j)] = z[0];
                 mass_matrix[(j, i)] = z[0];
                 coriolis_matrix[(j, i)] = z[1];

@@ -21,6 +21,8 @@
 //! care of it. The factorisation uses Householder reflections, whose Q is
 //! orthogonal to rounding however close to singular the tasks are.
 
+use core::cmp::Ordering;
+
 use heapless::Vec;
 
 use crate::fault::Flags;
@@ -41,13 +43,14 @@ pub type LevelRows<T> = Vec<JointVector<T>, MAX_ROWS>;
 pub struct Hierarchy<T: Real> {
     count: usize,
     level_start: [usize; MAX_ROWS],
-    /// Row k holds R_k0 .. R_kk, zeros behind.
-    r: [JointVector<T>; MAX_ROWS],
+    /// Row k holds R_k0 .. R_k(k-1), and from entry k on the reflector v_k:
+    /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T. Zeros behind the last row.
+    factors: [JointVector<T>; MAX_ROWS],
+    scale: [T; MAX_ROWS],
+    /// R_kk.
+    pivot: [T; MAX_ROWS],
     /// 1 / R_kk, 0 where the row is rank deficient.
     inverse_pivot: [T; MAX_ROWS],
-    /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T.
-    reflector: [JointVector<T>; MAX_ROWS],
-    scale: [T; MAX_ROWS],
     deficient: Flags,
 }
 
@@ -57,26 +60,27 @@ impl<T: Real> Hierarchy<T> {
     #[must_use]
     #[inline]
     pub fn new(rows: &TaskRows<T>, cholesky: &Cholesky<T>) -> Self {
+        let mut jacobian = rows.jacobian.iter();
         let mut h = Self {
-            count: rows.count,
+            count: rows.jacobian.len(),
             level_start: rows.level_start,
-            r: [zeros(); MAX_ROWS],
-            inverse_pivot: [T::ZERO; MAX_ROWS],
-            reflector: [zeros(); MAX_ROWS],
+            factors: core::array::from_fn(|_| match jacobian.next() {
+                Some(row) => cholesky.solve_lower(row),
+                None => zeros(),
+            }),
             scale: [T::ZERO; MAX_ROWS],
+            pivot: [T::ZERO; MAX_ROWS],
+            inverse_pivot: [T::ZERO; MAX_ROWS],
             deficient: Flags::NONE,
         };
-        let count = rows.count.min(MAX_ROWS);
-        for k in 0..count {
-            h.r[k] = cholesky.solve_lower(&rows.jacobian[k]);
-        }
+        let count = h.count.min(MAX_ROWS);
         for_each_joint!(k, {
             if k < count {
                 h.eliminate::<k>();
                 for row in k + 1..count {
-                    let mut below = h.r[row];
+                    let mut below = h.factors[row];
                     h.reflect::<k>(&mut below);
-                    h.r[row] = below;
+                    h.factors[row] = below;
                 }
             }
         });
@@ -86,7 +90,7 @@ impl<T: Real> Hierarchy<T> {
     /// The reflection that leaves row `K` zero behind entry `K`.
     #[inline(always)]
     fn eliminate<const K: usize>(&mut self) {
-        let row = self.r[K];
+        let row = self.factors[K];
         let mut norm_squared = T::ZERO;
         for i in K..DOF {
             norm_squared += row[i] * row[i];
@@ -97,13 +101,9 @@ impl<T: Real> Hierarchy<T> {
         // Below this a row is zero in either precision: no reflection.
         let turns = norm_squared > T::from_f64(1e-30);
 
-        for i in K..DOF {
-            self.reflector[K][i] = row[i];
-            self.r[K][i] = T::ZERO;
-        }
         let head = row[K] - pivot;
-        self.reflector[K][K] = head;
-        self.r[K][K] = pivot;
+        self.factors[K][K] = head;
+        self.pivot[K] = pivot;
         // Divisors are made harmless before the division: no branch.
         let scale = norm * (norm + (pivot + head).magnitude());
         let one = T::ONE;
@@ -117,7 +117,7 @@ impl<T: Real> Hierarchy<T> {
     /// Applies H_K, which leaves entries before `K` as they are.
     #[inline(always)]
     fn reflect<const K: usize>(&self, x: &mut JointVector<T>) {
-        let reflector = &self.reflector[K];
+        let reflector = &self.factors[K];
         let mut projection = reflector[K] * x[K];
         for i in K + 1..DOF {
             projection += reflector[i] * x[i];
@@ -125,6 +125,15 @@ impl<T: Real> Hierarchy<T> {
         projection *= self.scale[K];
         for i in K..DOF {
             x[i] -= reflector[i] * projection;
+        }
+    }
+
+    /// R_kj, zero for j > k.
+    fn r(&self, k: usize, j: usize) -> T {
+        match j.cmp(&k) {
+            Ordering::Less => self.factors[k][j],
+            Ordering::Equal => self.pivot[k],
+            Ordering::Greater => T::ZERO,
         }
     }
 
@@ -146,7 +155,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn conditioning(&self) -> [T; MAX_ROWS] {
         let mut diagonal = [T::ZERO; MAX_ROWS];
         for k in 0..MAX_ROWS {
-            diagonal[k] = self.r[k][k].magnitude();
+            diagonal[k] = self.pivot[k].magnitude();
         }
         diagonal
     }
@@ -214,7 +223,7 @@ impl<T: Real> Hierarchy<T> {
             if k < self.count {
                 let mut rest = b[k];
                 for j in 0..k {
-                    rest -= self.r[k][j] * y[j];
+                    rest -= self.factors[k][j] * y[j];
                 }
                 y[k] = rest * self.inverse_pivot[k];
             }
@@ -232,7 +241,7 @@ impl<T: Real> Hierarchy<T> {
             let mut known = T::ZERO;
             for j in 0..k {
                 if j >= self.level_start[k] {
-                    known += self.r[k][j] * y[j];
+                    known += self.factors[k][j] * y[j];
                 }
             }
             y[k] = (b[k] - known) * self.inverse_pivot[k];
@@ -251,7 +260,7 @@ impl<T: Real> Hierarchy<T> {
                 let value = rest[k] * self.inverse_pivot[k];
                 x[k] = value;
                 for j in 0..k {
-                    rest[j] -= self.r[k][j] * value;
+                    rest[j] -= self.factors[k][j] * value;
                 }
             }
         });
@@ -292,7 +301,7 @@ impl<T: Real> Hierarchy<T> {
         let range = self.level_range(level);
         let row = |k: usize| {
             range.clone().fold(zeros(), |sum: JointVector<T>, j| {
-                sum + cholesky.lower_times(&self.q_row(j)) * self.r[k][j]
+                sum + cholesky.lower_times(&self.q_row(j)) * self.r(k, j)
             })
         };
         range.clone().map(row).collect()

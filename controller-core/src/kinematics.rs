@@ -34,6 +34,13 @@ impl<T: Real> LinkPoint<T> {
 /// Index i of the arrays is DH frame i, which moves with link i (0 is fixed).
 #[derive(Clone, Copy, Debug)]
 pub struct Kinematics<T: Real> {
+    /// Axes of the joints, unit vectors (z of frame i for joint i + 1), by rows x, y, z.
+    pub axis: [JointVector<T>; 3],
+    /// Time derivatives of the axes \[1/s\], by rows x, y, z.
+    pub axis_rate: [JointVector<T>; 3],
+    /// `origin` of the frames of the joints' axes and its velocity, by rows.
+    joint_origin: [JointVector<T>; 3],
+    joint_velocity: [JointVector<T>; 3],
     /// Orientation of frame i: its axes are the columns, in base-plate axes.
     pub rotation: [Matrix3<T>; FRAMES],
     /// Origin of frame i \[m\].
@@ -42,13 +49,6 @@ pub struct Kinematics<T: Real> {
     pub angular_velocity: [Vector3<T>; FRAMES],
     /// Velocity of the origin of frame i, carried by link i \[m/s\].
     pub origin_velocity: [Vector3<T>; FRAMES],
-    /// Axes of the joints, unit vectors (z of frame i for joint i + 1), by rows x, y, z.
-    pub axis: [JointVector<T>; 3],
-    /// Time derivatives of the axes \[1/s\], by rows x, y, z.
-    pub axis_rate: [JointVector<T>; 3],
-    /// `origin` of the frames of the joints' axes and its velocity, by rows.
-    joint_origin: [JointVector<T>; 3],
-    joint_velocity: [JointVector<T>; 3],
     /// Sine and cosine of q, for the dynamics.
     pub(crate) sine: JointVector<T>,
     pub(crate) cosine: JointVector<T>,
@@ -164,25 +164,26 @@ impl<T: Real> Kinematics<T> {
     }
 
     /// J and dJ/dt of a point whose motion is `motion`: columns z x (x - o) and
-    /// dz x (x - o) + z x (dx - do) for the joints below its link, else zero.
+    /// dz x (x - o) + z x (dx - do) for the joints up to its link, else zero.
     #[must_use]
     #[inline]
     pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> JacobianRows<T> {
-        let lever = difference(&motion.x, &self.joint_origin);
-        let lever_rate = difference(&motion.dx, &self.joint_velocity);
         let mut rows = JacobianRows {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
-        for (row, [y, z]) in [[1, 2], [2, 0], [0, 1]].into_iter().enumerate() {
-            let (axis, rate) = (&self.axis, &self.axis_rate);
-            for i in 0..DOF {
-                rows.jacobian[row][i] = axis[y][i] * lever[z][i] - axis[z][i] * lever[y][i];
-                rows.jacobian_dot[row][i] = (rate[y][i] * lever[z][i] - rate[z][i] * lever[y][i])
-                    + (axis[y][i] * lever_rate[z][i] - axis[z][i] * lever_rate[y][i]);
+        let column = |of: &[JointVector<T>; 3], i| Vector3::from([of[0][i], of[1][i], of[2][i]]);
+        for i in 0..link.min(DOF) {
+            let (axis, axis_rate) = (column(&self.axis, i), column(&self.axis_rate, i));
+            let lever = motion.x - column(&self.joint_origin, i);
+            let lever_rate = motion.dx - column(&self.joint_velocity, i);
+            let j = axis.cross(&lever);
+            let dj = axis_rate.cross(&lever) + axis.cross(&lever_rate);
+            for row in 0..3 {
+                rows.jacobian[row][i] = j[row];
+                rows.jacobian_dot[row][i] = dj[row];
             }
         }
-        rows.cut(link);
         rows
     }
 
@@ -215,23 +216,10 @@ impl<T: Real> JacobianRows<T> {
     /// Joints behind `link` do not move it.
     #[inline(always)]
     fn cut(&mut self, link: usize) {
-        for i in link..DOF {
-            for row in 0..3 {
-                self.jacobian[row][i] = T::ZERO;
-                self.jacobian_dot[row][i] = T::ZERO;
+        for row in self.jacobian.iter_mut().chain(&mut self.jacobian_dot) {
+            if let Some(behind) = row.as_mut_slice().get_mut(link..) {
+                behind.fill(T::ZERO);
             }
         }
     }
-}
-
-/// One vector less that of every joint, by rows.
-#[inline(always)]
-fn difference<T: Real>(one: &Vector3<T>, each: &[JointVector<T>; 3]) -> [JointVector<T>; 3] {
-    let mut rows = [zeros(); 3];
-    for row in 0..3 {
-        for i in 0..DOF {
-            rows[row][i] = one[row] - each[row][i];
-        }
-    }
-    rows
 }

@@ -116,8 +116,7 @@ impl<T: Real> Command<T> {
         posture: &JointVector<T>,
     ) -> Self {
         let mut transport: JointVector<T> = zeros();
-        let used = rows.jacobian_dot.iter().take(rows.count);
-        for (row, &momentum) in used.zip(&motion.task_momentum) {
+        for (row, &momentum) in rows.jacobian_dot.iter().zip(&motion.task_momentum) {
             transport += row * momentum;
         }
         Self {

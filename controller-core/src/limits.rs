@@ -26,7 +26,7 @@ impl<T: Real> TorqueCommand<T> {
             torque: demand.0,
             saturated: Flags::NONE,
         };
-        if !all_finite(demand.0.iter()) {
+        if !all_finite(&demand.0) {
             for (index, &torque) in (1..).zip(&demand.0) {
                 finite(FaultKind::NonFiniteTorque, Quantity::Torque, index, torque)?;
             }

@@ -1,6 +1,7 @@
 //! What enters a cycle, and the check that it can be true.
 
 use heapless::Vec;
+use nalgebra::SVector;
 
 use crate::fault::{Fault, FaultKind, Quantity};
 use crate::joint::{DOF, JointState, JointVector, zeros};
@@ -98,8 +99,12 @@ pub(crate) fn plausible<T: Real>(
 /// Whether every value is finite: x - x is 0 where x is, else NaN, which no sum loses.
 #[inline(always)]
 #[allow(clippy::eq_op)]
-pub(crate) fn all_finite<'a, T: Real>(values: impl Iterator<Item = &'a T>) -> bool {
-    values.fold(T::ZERO, |sum, &x| sum + (x - x)) == T::ZERO
+pub(crate) fn all_finite<T: Real, const N: usize>(values: &SVector<T, N>) -> bool {
+    let mut sum = T::ZERO;
+    for i in 0..N {
+        sum += values[i] - values[i];
+    }
+    sum == T::ZERO
 }
 
 /// Checks that a reference has `levels` entries and only finite numbers.
@@ -122,14 +127,14 @@ pub(crate) fn usable<T: Real>(reference: &Reference<T>, levels: usize) -> Result
         let norm_squared = task.orientation.dot(&task.orientation);
         let [low, high] = QUATERNION_NORMS.map(|norm| T::from_f64(norm * norm));
         within(Quantity::Orientation, index, norm_squared, low, high)?;
-        if !all_finite(task.x.iter().chain(&task.dx).chain(&task.ddx)) {
+        if !(all_finite(&task.x) & all_finite(&task.dx) & all_finite(&task.ddx)) {
             for &value in task.x.iter().chain(&task.dx).chain(&task.ddx) {
                 let quantity = Quantity::TaskReference;
                 finite(FaultKind::Implausible, quantity, index, value)?;
             }
         }
     }
-    if !all_finite(reference.posture.iter()) {
+    if !all_finite(&reference.posture) {
         for (index, &value) in (1..).zip(&reference.posture) {
             let quantity = Quantity::PostureReference;
             finite(FaultKind::Implausible, quantity, index, value)?;

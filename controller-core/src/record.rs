@@ -53,9 +53,9 @@ impl<T: Real, const N: usize> Recorder<T, N> {
             residual: step.residual,
             status: step.status,
         };
-        if let Err(record) = self.cycles.push(record)
-            && let Some(place) = self.cycles.get_mut(self.oldest)
-        {
+        if !self.cycles.is_full() {
+            let _ = self.cycles.push(record);
+        } else if let Some(place) = self.cycles.get_mut(self.oldest) {
             *place = record;
             self.oldest = (self.oldest + 1) % N;
         }

@@ -1,8 +1,10 @@
 //! Tasks: a point or the orientation of a link, the axes of it that a priority
 //! level controls, and its gains; and the stacked rows J, dJ/dt that all levels make together.
 
+use heapless::Vec;
+
 use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, zeros};
-use crate::kinematics::{JacobianRows, Kinematics, LinkPoint};
+use crate::kinematics::{JacobianRows, Kinematics, LinkMotion, LinkPoint};
 use crate::orientation::{self, Quaternion};
 use crate::real::Real;
 
@@ -170,51 +172,17 @@ impl<T: Real> TaskReference<T> {
     }
 }
 
-/// Where a task's point or frame is, how it moves, and how the joints move it.
-struct Target<T: Real> {
-    actual: TaskReference<T>,
-    rows: JacobianRows<T>,
-}
-
-impl<T: Real> Target<T> {
-    #[inline]
-    fn position(task: &Task<T>, kinematics: &Kinematics<T>) -> Self {
-        let motion = kinematics.point(&task.point);
-        Self {
-            actual: TaskReference {
-                dx: motion.dx,
-                ..TaskReference::rest(motion.x)
-            },
-            rows: kinematics.point_jacobian(task.point.link, &motion),
-        }
-    }
-
-    #[inline]
-    fn orientation(task: &Task<T>, kinematics: &Kinematics<T>) -> Self {
-        let motion = kinematics.link(task.point.link);
-        Self {
-            actual: TaskReference {
-                dx: motion.angular_velocity,
-                ..TaskReference::facing(orientation::of_rotation(&motion.rotation))
-            },
-            rows: kinematics.angular_jacobian(task.point.link),
-        }
-    }
-}
-
 /// The stacked rows of all levels in priority order, first level first.
 ///
-/// Rows beyond `count` are zero.
-#[derive(Clone, Copy, Debug)]
+/// There are as many rows as `jacobian` has; behind them the arrays are zero.
+#[derive(Clone, Debug)]
 pub struct TaskRows<T: Real> {
-    /// Number of rows m.
-    pub count: usize,
     /// First row of the level that row k belongs to.
     pub level_start: [usize; MAX_ROWS],
     /// Rows of J \[m\].
-    pub jacobian: [JointVector<T>; MAX_ROWS],
+    pub jacobian: Vec<JointVector<T>, MAX_ROWS>,
     /// Rows of dJ/dt \[m/s\].
-    pub jacobian_dot: [JointVector<T>; MAX_ROWS],
+    pub jacobian_dot: Vec<JointVector<T>, MAX_ROWS>,
     /// (dJ/dt) dq \[m/s2\].
     pub bias: [T; MAX_ROWS],
     /// Task acceleration wanted, (12) without the bias:
@@ -238,63 +206,95 @@ impl<T: Real> TaskRows<T> {
         state: &JointState<T>,
     ) -> Self {
         let mut rows = Self {
-            count: 0,
             level_start: [0; MAX_ROWS],
-            jacobian: [zeros(); MAX_ROWS],
-            jacobian_dot: [zeros(); MAX_ROWS],
+            jacobian: Vec::new(),
+            jacobian_dot: Vec::new(),
             bias: [T::ZERO; MAX_ROWS],
             wanted: [T::ZERO; MAX_ROWS],
             error: [T::ZERO; MAX_ROWS],
         };
         let mut references = references.iter();
         for task in tasks {
-            let target = match task.kind {
-                TaskKind::Position => Target::position(task, kinematics),
-                TaskKind::Orientation => Target::orientation(task, kinematics),
-            };
-            let reference = references.next().unwrap_or(&target.actual);
-            rows.push(task, reference, &target, state);
+            match task.kind {
+                TaskKind::Position => rows.position(task, references.next(), kinematics, state),
+                TaskKind::Orientation => {
+                    rows.orientation(task, references.next(), kinematics, state);
+                }
+            }
         }
         rows
     }
 
-    #[inline]
-    fn push(
+    #[inline(always)]
+    fn position(
         &mut self,
         task: &Task<T>,
-        reference: &TaskReference<T>,
-        target: &Target<T>,
+        reference: Option<&TaskReference<T>>,
+        kinematics: &Kinematics<T>,
         state: &JointState<T>,
     ) {
-        let Target {
-            actual,
-            rows: point,
-        } = target;
-        let selected = |v: Vector3<T>| task.axes.select(&v);
-        let error = selected(match task.kind {
-            TaskKind::Position => reference.x - actual.x,
-            TaskKind::Orientation => {
-                orientation::error(&reference.orientation, &actual.orientation)
-            }
+        let motion = kinematics.point(&task.point);
+        let level = Level::new(self.count(), task, reference, &motion.dx, |reference| {
+            reference.x - motion.x
         });
-        let error_rate = selected(reference.dx - actual.dx);
-        let wanted = reference.ddx + task.damping * error_rate + task.stiffness * error;
-        let level_start = self.count;
+        self.push(&level, state, &kinematics.point_jacobian(task.point.link, &motion));
+    }
+
+    #[inline(always)]
+    fn orientation(
+        &mut self,
+        task: &Task<T>,
+        reference: Option<&TaskReference<T>>,
+        kinematics: &Kinematics<T>,
+        state: &JointState<T>,
+    ) {
+        let LinkMotion {
+            rotation,
+            angular_velocity,
+        } = kinematics.link(task.point.link);
+        let level = Level::new(self.count(), task, reference, &angular_velocity, |reference| {
+            orientation::error(&reference.orientation, &orientation::of_rotation(&rotation))
+        });
+        self.push(&level, state, &kinematics.angular_jacobian(task.point.link));
+    }
+
+    /// The rows of the axes that the level controls.
+    #[inline(always)]
+    fn push(&mut self, level: &Level<T>, state: &JointState<T>, all: &JacobianRows<T>) {
         for axis in 0..3 {
-            let row = self.count;
-            if task.axes.xyz[axis] && row < MAX_ROWS {
+            let place = self.count();
+            if level.axes.xyz[axis] && place < MAX_ROWS {
                 let mut bias = T::ZERO;
                 for i in 0..DOF {
-                    bias += point.jacobian_dot[axis][i] * state.dq[i];
+                    bias += all.jacobian_dot[axis][i] * state.dq[i];
                 }
-                self.level_start[row] = level_start;
-                self.jacobian[row] = point.jacobian[axis];
-                self.jacobian_dot[row] = point.jacobian_dot[axis];
-                self.bias[row] = bias;
-                self.wanted[row] = wanted[axis];
-                self.error[row] = error[axis];
-                self.count = row + 1;
+                self.level_start[place] = level.start;
+                // Never full: there is a place.
+                let _ = self.jacobian.push(all.jacobian[axis]);
+                let _ = self.jacobian_dot.push(all.jacobian_dot[axis]);
+                self.bias[place] = bias;
+                self.wanted[place] = level.wanted[axis];
+                self.error[place] = level.error[axis];
             }
+        }
+    }
+
+    /// Number of rows m.
+    #[must_use]
+    #[inline]
+    pub fn count(&self) -> usize {
+        self.jacobian.len()
+    }
+
+    /// Drops the rows from `count` on.
+    pub fn truncate(&mut self, count: usize) {
+        self.jacobian.truncate(count);
+        self.jacobian_dot.truncate(count);
+        for row in count..MAX_ROWS {
+            self.level_start[row] = 0;
+            self.bias[row] = T::ZERO;
+            self.wanted[row] = T::ZERO;
+            self.error[row] = T::ZERO;
         }
     }
 
@@ -310,14 +310,50 @@ impl<T: Real> TaskRows<T> {
     }
 }
 
+/// What one task asks for, before it becomes rows.
+struct Level<T: Real> {
+    /// Index of its first row.
+    start: usize,
+    axes: Axes,
+    /// As in [`TaskRows::error`].
+    error: Vector3<T>,
+    /// As in [`TaskRows::wanted`].
+    wanted: Vector3<T>,
+}
+
+impl<T: Real> Level<T> {
+    /// `error` is asked for the deviation from the reference; without one there is none.
+    #[inline(always)]
+    fn new(
+        start: usize,
+        task: &Task<T>,
+        reference: Option<&TaskReference<T>>,
+        velocity: &Vector3<T>,
+        error: impl FnOnce(&TaskReference<T>) -> Vector3<T>,
+    ) -> Self {
+        let mut level = Self {
+            start,
+            axes: task.axes,
+            error: zeros(),
+            wanted: zeros(),
+        };
+        if let Some(reference) = reference {
+            let rate = task.axes.select(&(reference.dx - velocity));
+            level.error = task.axes.select(&error(reference));
+            level.wanted = reference.ddx + task.damping * rate + task.stiffness * level.error;
+        }
+        level
+    }
+}
+
 impl Axes {
     /// `v` with the uncontrolled axes set to zero.
     #[inline(always)]
     fn select<T: Real>(self, v: &Vector3<T>) -> Vector3<T> {
         let mut selected = *v;
-        for (value, on) in selected.iter_mut().zip(self.xyz) {
-            if !on {
-                *value = T::ZERO;
+        for axis in 0..3 {
+            if !self.xyz[axis] {
+                selected[axis] = T::ZERO;
             }
         }
         selected

@@ -6,7 +6,7 @@ use controller_core::hierarchy::Hierarchy;
 use controller_core::joint::{JointMatrix, JointVector};
 use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
 use controller_core::linalg::Cholesky;
-use controller_core::task::{MAX_ROWS, TaskRows};
+use controller_core::task::MAX_ROWS;
 
 use crate::names::Named;
 
@@ -172,12 +172,10 @@ fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
     let (rows, dynamics, dq) = (cycle.rows, cycle.dynamics, &cycle.state.dq);
     let cholesky = &dynamics.cholesky;
     let mut bias = rows.bias;
-    for row in 0..rows.count {
-        let above = TaskRows {
-            count: rows.level_start[row],
-            ..*rows
-        };
-        if above.count == 0 {
+    for row in 0..rows.count() {
+        let mut above = rows.clone();
+        above.truncate(rows.level_start[row]);
+        if above.count() == 0 {
             continue;
         }
         let hierarchy = Hierarchy::new(&above, cholesky);
@@ -185,7 +183,7 @@ fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
         let (w, n) = (motion.task_velocity, motion.null_velocity);
         let mut transport = -(dynamics.coriolis_matrix * w + dynamics.coriolis_transpose_times(&w));
         let mut turning = [0.0; MAX_ROWS];
-        for k in 0..above.count {
+        for k in 0..above.count() {
             transport += rows.jacobian_dot[k] * motion.task_momentum[k];
             turning[k] = rows.jacobian_dot[k].dot(&n);
         }

@@ -115,7 +115,7 @@ fn levels_and_null_space_are_orthogonal_however_near_a_singularity() {
         } = sample(&case, &model, 1.0);
         let cholesky = &dynamics.cholesky;
         let mass = Matrix::of(&dynamics.mass_matrix);
-        let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count]);
+        let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count()]);
         let z = Matrix::from_rows(&hierarchy.null_basis(cholesky));
         let null_map = &z * &mass;
         let whole = |level: usize| {
@@ -186,7 +186,7 @@ fn the_projectors_project() {
         } = sample(&case, &model, 1.0);
         let n = Matrix::of::<7, 7>(&hierarchy.null_projector(&dynamics.cholesky));
         let mass = Matrix::of(&dynamics.mass_matrix);
-        let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count]);
+        let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count()]);
         // Entries of N reach ||L^-1|| ||L|| = 126.
         let size = 126.0 * n.amax().max(1.0);
         (worst[0].borrow_mut()).add((&n * &n - &n).amax() / size);
@@ -279,7 +279,7 @@ fn the_plant_accelerates_every_resolvable_row_as_wanted() {
         let sample = sample(&case, &model, 0.0);
         let JointState { q, dq } = &sample.state;
         let ddq = plant.forward_dynamics(q, dq, &sample.demand(), &JointVector::zeros());
-        for row in 0..sample.rows.count {
+        for row in 0..sample.rows.count() {
             if sample.hierarchy.deficient().contains(row) {
                 continue;
             }

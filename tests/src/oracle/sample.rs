@@ -249,9 +249,9 @@ impl Sample {
 #[must_use]
 pub fn terms(cycle: &Cycle<'_, f64>, null_space: &NullSpace<f64>) -> Terms {
     let (rows, dynamics) = (cycle.rows, cycle.dynamics);
-    let starts: Vec<usize> = (0..rows.count)
+    let starts: Vec<usize> = (0..rows.count())
         .filter(|&row| rows.level_start[row] == row)
-        .chain([rows.count])
+        .chain([rows.count()])
         .collect();
     let levels = starts.windows(2).map(|range| LevelTerms {
         jacobian: Matrix::from_rows(&rows.jacobian[range[0]..range[1]]),
