@@ -245,7 +245,8 @@ impl<T: Real> Controller<T> {
             .observer
             .update(&self.observer_gain, interval_s, &dynamics.momentum);
 
-        let rows = TaskRows::new(&self.tasks, &reference.tasks, &kinematics, joints);
+        let mut rows = TaskRows::empty();
+        rows.stack(&self.tasks, &reference.tasks, &kinematics, joints);
         let hierarchy = Hierarchy::new(&rows, &dynamics.cholesky);
         let motion = TaskMotion::new(&dynamics, &hierarchy, joints);
         let posture = state.posture.update(

@@ -193,6 +193,20 @@ pub struct TaskRows<T: Real> {
 }
 
 impl<T: Real> TaskRows<T> {
+    /// No rows yet.
+    #[must_use]
+    #[inline]
+    pub const fn empty() -> Self {
+        Self {
+            level_start: [0; MAX_ROWS],
+            jacobian: Vec::new(),
+            jacobian_dot: Vec::new(),
+            bias: [T::ZERO; MAX_ROWS],
+            wanted: [T::ZERO; MAX_ROWS],
+            error: [T::ZERO; MAX_ROWS],
+        }
+    }
+
     /// Rows of all `tasks` with their `references`, level by level.
     ///
     /// A level without a reference is held where it is. Rows beyond
@@ -205,24 +219,29 @@ impl<T: Real> TaskRows<T> {
         kinematics: &Kinematics<T>,
         state: &JointState<T>,
     ) -> Self {
-        let mut rows = Self {
-            level_start: [0; MAX_ROWS],
-            jacobian: Vec::new(),
-            jacobian_dot: Vec::new(),
-            bias: [T::ZERO; MAX_ROWS],
-            wanted: [T::ZERO; MAX_ROWS],
-            error: [T::ZERO; MAX_ROWS],
-        };
+        let mut rows = Self::empty();
+        rows.stack(tasks, references, kinematics, state);
+        rows
+    }
+
+    /// Adds the rows of all `tasks`, as [`TaskRows::new`] but without a copy of the whole.
+    #[inline]
+    pub fn stack(
+        &mut self,
+        tasks: &[Task<T>],
+        references: &[TaskReference<T>],
+        kinematics: &Kinematics<T>,
+        state: &JointState<T>,
+    ) {
         let mut references = references.iter();
         for task in tasks {
             match task.kind {
-                TaskKind::Position => rows.position(task, references.next(), kinematics, state),
+                TaskKind::Position => self.position(task, references.next(), kinematics, state),
                 TaskKind::Orientation => {
-                    rows.orientation(task, references.next(), kinematics, state);
+                    self.orientation(task, references.next(), kinematics, state);
                 }
             }
         }
-        rows
     }
 
     #[inline(always)]
