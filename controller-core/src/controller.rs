@@ -234,7 +234,8 @@ impl<T: Real> Controller<T> {
         law: impl FnOnce(&Cycle<'_, T>) -> TorqueDemand<T>,
     ) -> Step<T> {
         let kinematics = Kinematics::new(&self.model, joints);
-        let dynamics = Dynamics::new(&self.model, &kinematics, joints);
+        let mut dynamics = Dynamics::empty();
+        dynamics.update(&self.model, &kinematics, joints);
         let limit = self.model.torque_limit();
         state.hold = match TorqueCommand::new(&TorqueDemand(dynamics.gravity), limit) {
             Ok(command) => command.torque,

@@ -34,10 +34,37 @@ pub struct Dynamics<T: Real> {
 }
 
 impl<T: Real> Dynamics<T> {
+    /// Nothing computed yet.
+    #[must_use]
+    #[inline]
+    pub const fn empty() -> Self {
+        Self {
+            mass_matrix: zeros(),
+            coriolis_matrix: zeros(),
+            coriolis: zeros(),
+            gravity: zeros(),
+            momentum: zeros(),
+            cholesky: Cholesky::empty(),
+        }
+    }
+
     /// One pass from flange to base.
     #[must_use]
     #[inline]
     pub fn new(model: &ArmModel<T>, kinematics: &Kinematics<T>, state: &JointState<T>) -> Self {
+        let mut dynamics = Self::empty();
+        dynamics.update(model, kinematics, state);
+        dynamics
+    }
+
+    /// As [`Dynamics::new`], without a copy of the whole.
+    #[inline]
+    pub fn update(
+        &mut self,
+        model: &ArmModel<T>,
+        kinematics: &Kinematics<T>,
+        state: &JointState<T>,
+    ) {
         // From the frame of joint i to that of joint i - 1; before joint 1 lies the
         // base, whose link 0 has no length and no twist.
         let way = |i: usize| Way {
@@ -61,9 +88,12 @@ impl<T: Real> Dynamics<T> {
             motion[i] = last;
         }
 
-        let mut mass_matrix = zeros();
-        let mut coriolis_matrix = zeros();
-        let mut gravity: JointVector<T> = zeros();
+        let Self {
+            mass_matrix,
+            coriolis_matrix,
+            gravity,
+            ..
+        } = self;
         let mut group = Moments::zero();
         for i in (0..DOF).rev() {
             if i < DOF - 1 {
@@ -91,14 +121,9 @@ impl<T: Real> Dynamics<T> {
             }
         }
 
-        Self {
-            cholesky: Cholesky::new(&mass_matrix),
-            momentum: mass_matrix * state.dq,
-            coriolis: coriolis_matrix * state.dq,
-            mass_matrix,
-            coriolis_matrix,
-            gravity,
-        }
+        self.cholesky.update(&self.mass_matrix);
+        self.momentum = self.mass_matrix * state.dq;
+        self.coriolis = self.coriolis_matrix * state.dq;
     }
 
     /// C^T x \[Nm for x in rad/s\].

@@ -32,6 +32,16 @@ pub struct Cholesky<T: Real> {
 }
 
 impl<T: Real> Cholesky<T> {
+    /// No factor yet.
+    #[must_use]
+    #[inline]
+    pub const fn empty() -> Self {
+        Self {
+            l: zeros(),
+            inverse_diagonal: zeros(),
+        }
+    }
+
     /// Factors `a`; only its lower triangle is read.
     ///
     /// Never fails: a pivot below 1e-30 counts as 1e-30, so the factor of a
@@ -41,8 +51,18 @@ impl<T: Real> Cholesky<T> {
     #[must_use]
     #[inline]
     pub fn new(a: &JointMatrix<T>) -> Self {
-        let mut l = zeros();
-        let mut inverse_diagonal: JointVector<T> = zeros();
+        let mut factor = Self::empty();
+        factor.update(a);
+        factor
+    }
+
+    /// As [`Cholesky::new`], where the factor lies.
+    #[inline]
+    pub fn update(&mut self, a: &JointMatrix<T>) {
+        let Self {
+            l,
+            inverse_diagonal,
+        } = self;
         let floor = T::from_f64(1e-30);
         for_each_joint!(j, {
             let mut column: JointVector<T> = zeros();
@@ -63,10 +83,6 @@ impl<T: Real> Cholesky<T> {
                 l[(i, j)] = column[i] * inverse;
             }
         });
-        Self {
-            l,
-            inverse_diagonal,
-        }
     }
 
     /// As [`Cholesky::new`], or the first index (0..7) whose pivot is not above
