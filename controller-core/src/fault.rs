@@ -146,6 +146,13 @@ pub struct Status {
 }
 
 impl Status {
+    /// No limit, no fault.
+    pub const CLEAR: Self = Self {
+        fault: None,
+        saturated: Flags::NONE,
+        rank: Flags::NONE,
+    };
+
     /// Nothing limited the cycle and there is no fault.
     #[must_use]
     pub fn is_clear(&self) -> bool {

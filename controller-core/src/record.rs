@@ -1,11 +1,9 @@
 //! One cycle as data, and a ring of the last cycles in the caller's storage:
 //! what happened before a fault.
 
-use heapless::Vec;
-
 use crate::controller::Step;
 use crate::fault::Status;
-use crate::joint::JointVector;
+use crate::joint::{JointVector, zeros};
 use crate::measurement::Measurement;
 use crate::real::Real;
 
@@ -24,12 +22,29 @@ pub struct CycleRecord<T: Real> {
     pub status: Status,
 }
 
+impl<T: Real> CycleRecord<T> {
+    /// All zero.
+    const EMPTY: Self = Self {
+        number: 0,
+        measurement: Measurement {
+            q: zeros(),
+            dq: zeros(),
+            interval_s: T::ZERO,
+        },
+        torque: zeros(),
+        residual: zeros(),
+        status: Status::CLEAR,
+    };
+}
+
 /// The last `N` cycles. Const-constructed, so that it can be a `static`.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Recorder<T: Real, const N: usize> {
-    cycles: Vec<CycleRecord<T>, N>,
-    /// Where the next cycle goes once all places are taken.
-    oldest: usize,
+    cycles: [CycleRecord<T>; N],
+    /// Places that hold a cycle.
+    taken: usize,
+    /// Where the next cycle goes: the oldest one once all places are taken.
+    place: usize,
     next: u32,
 }
 
@@ -38,33 +53,37 @@ impl<T: Real, const N: usize> Recorder<T, N> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            cycles: Vec::new(),
-            oldest: 0,
+            cycles: [CycleRecord::EMPTY; N],
+            taken: 0,
+            place: 0,
             next: 0,
         }
     }
 
     /// Adds a cycle; the oldest one gives way. The number wraps around.
     pub fn push(&mut self, measurement: &Measurement<T>, step: &Step<T>) {
-        let record = CycleRecord {
-            number: self.next,
-            measurement: *measurement,
-            torque: step.torque,
-            residual: step.residual,
-            status: step.status,
-        };
-        if !self.cycles.is_full() {
-            let _ = self.cycles.push(record);
-        } else if let Some(place) = self.cycles.get_mut(self.oldest) {
-            *place = record;
-            self.oldest = (self.oldest + 1) % N;
+        if let Some(place) = self.cycles.get_mut(self.place) {
+            place.number = self.next;
+            place.measurement = *measurement;
+            place.torque = step.torque;
+            place.residual = step.residual;
+            place.status = step.status;
+            self.place = if self.place + 1 < N { self.place + 1 } else { 0 };
+            self.taken = N.min(self.taken + 1);
         }
         self.next = self.next.wrapping_add(1);
     }
 
     /// The recorded cycles, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = &CycleRecord<T>> {
-        let (newer, older) = (self.cycles.iter(), self.cycles.iter());
-        older.skip(self.oldest).chain(newer.take(self.oldest))
+        let oldest = if self.taken < N { 0 } else { self.place };
+        let in_turn = self.cycles.iter().chain(&self.cycles);
+        in_turn.skip(oldest).take(self.taken)
+    }
+}
+
+impl<T: Real, const N: usize> Default for Recorder<T, N> {
+    fn default() -> Self {
+        Self::new()
     }
 }
