@@ -12,7 +12,7 @@
 use crate::dynamics::Dynamics;
 use crate::joint::{DOF, JointMatrix, JointState, JointVector, zeros};
 use crate::kinematics::Kinematics;
-use crate::linalg::largest_eigenpair;
+use crate::linalg::{Cholesky, largest_eigenpair};
 use crate::model::ArmModel;
 use crate::real::Real;
 
@@ -65,7 +65,8 @@ pub fn fastest_mode<T: Real>(model: &ArmModel<T>, damping: &JointMatrix<T>) -> D
         joint: 1,
         posture: [0.0; DOF],
     };
-    for posture in POSTURES_DEG {
+    // By reference: a copy of the set would lie on the stack.
+    for posture in &POSTURES_DEG {
         let mode = mode_at(model, damping, posture.map(f64::to_radians));
         if mode.rate > fastest.rate {
             fastest = mode;
@@ -81,14 +82,33 @@ pub fn mode_at<T: Real>(
     damping: &JointMatrix<T>,
     posture: [f64; DOF],
 ) -> DampingRate {
+    let factor = mass_factor(model, &posture);
+    let (rate, joint) = fastest_of(&factor, damping);
+    DampingRate {
+        rate: rate.to_f64(),
+        joint,
+        posture,
+    }
+}
+
+/// L of M = L L^T at a posture \[rad\]. Behind a call, as [`fastest_of`]: their work
+/// sets take turns on the stack instead of lying there together.
+#[inline(never)]
+fn mass_factor<T: Real>(model: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T> {
     let state = JointState {
         q: JointVector::from(posture.map(T::from_f64)),
         dq: zeros(),
     };
     let kinematics = Kinematics::new(model, &state);
-    let dynamics = Dynamics::new(model, &kinematics, &state);
-    let (rate, whitened) = largest_eigenpair(&dynamics.cholesky.whiten(damping));
-    let mode = dynamics.cholesky.solve_upper(&whitened);
+    Dynamics::new(model, &kinematics, &state).cholesky
+}
+
+/// lambda_max(L^-1 D L^-T) \[1/s\], and the joint, 1..=7, that dissipates most in
+/// its mode.
+#[inline(never)]
+fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, usize) {
+    let (rate, whitened) = largest_eigenpair(&factor.whiten(damping));
+    let mode = factor.solve_upper(&whitened);
     let power = mode.component_mul(&(damping * mode));
     let mut joint = 0;
     for i in 1..DOF {
@@ -96,9 +116,5 @@ pub fn mode_at<T: Real>(
             joint = i;
         }
     }
-    DampingRate {
-        rate: rate.to_f64(),
-        joint: joint + 1,
-        posture,
-    }
+    (rate, joint + 1)
 }
