@@ -13,7 +13,7 @@ use nalgebra::Matrix4;
 
 use crate::joint::{DOF, JointMatrix, zeros};
 use crate::linalg::{Cholesky, largest_eigenpair};
-use crate::model::ArmModel;
+use crate::model::{ArmModel, Link};
 use crate::real::Real;
 
 /// What h lambda must stay below with `dead_cycles` cycles between measurement
@@ -123,28 +123,20 @@ fn set_mass_matrix<T: Real>(
         flow.set_column(1, &group.column(0));
         mass_matrix[(i, i)] = flow.m12 - flow.m21;
         for j in (0..i).rev() {
-            flow = inward(model, posture, j, &flow);
+            flow = inward(&model.links[j], posture[j + 1], &flow);
             mass_matrix[(i, j)] = flow.m12 - flow.m21;
         }
         if i > 0 {
-            group = inward(model, posture, i - 1, &group);
+            group = inward(&model.links[i - 1], posture[i], &group);
         }
     }
 }
 
-/// A X A^T with A from the frame of joint `link` + 2, counted from 1, to the one
-/// before it: turned about z by its angle, then the twist and length of the link
-/// between.
+/// A X A^T with A from the frame of a joint to that of the joint before it: turned
+/// about z by its `angle` \[rad\], then the twist and lengths of the `link` between.
 #[inline(never)]
-fn inward<T: Real>(
-    model: &ArmModel<T>,
-    posture: &[f64; DOF],
-    link: usize,
-    x: &Matrix4<T>,
-) -> Matrix4<T> {
-    let angle = posture.get(link + 1).copied().unwrap_or_default();
+fn inward<T: Real>(link: &Link<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
     let (sine, cosine) = T::from_f64(angle).sine_cosine();
-    let link = &model.links[link];
     let (zero, one) = (T::ZERO, T::ONE);
     let (sin_alpha, cos_alpha) = (link.sin_alpha, link.cos_alpha);
     let way = Matrix4::new(
