@@ -1,6 +1,7 @@
 //! docs/timing.md from the figures.
 
 use crate::figures::{Controller, Figures};
+use crate::flops;
 
 /// Core clock of the estimate \[MHz\].
 const CLOCK_MHZ: f64 = 480.0;
@@ -10,8 +11,10 @@ const CYCLES_PER_INSTRUCTION: [(&str, [f64; 2]); 2] = [("f64", [1.3, 3.0]), ("f3
 
 const INTRODUCTION: &str = "# Timing on a Cortex-M7
 
-Made by `cargo bench-m7 --write`; `cargo bench-m7` measures again and fails where a
-figure is more than 2 % above [timing.json](timing.json). Do not edit.
+Made by `cargo bench-m7 --write`, with [timing.json](timing.json) for programs; do not
+edit. `cargo bench-m7` measures again and fails where a figure is more than 2 % above
+timing.json or beyond its limit; `controller-core/benches/instructions.sh` does the same
+for the host. CI runs both.
 
 **QEMU counts instructions, not cycles.** It has no pipeline, no dual issue, no
 caches, no wait states. The counts are exact and the same on every host; how long
@@ -26,12 +29,31 @@ torques are cut, denormal numbers, zeros. Torques of all of them are the same bi
 on the host.
 ";
 
+const LIMITS: &str = "
+Limits, whatever is committed: at most 20000 instructions in f64 and 16000 in f32 here,
+10000 with two levels and 12000 with three on the host (the null space counts as a
+level), a spread below 0.5 %.
+";
+
 const STAGES: &str = "
 ## Parts of a cycle
 
 Each part alone, behind a call of its own: largest number of instructions over the same
-inputs. In the cycle parts are inlined into each other, so that the sum is not the cycle;
-the last row is the difference: checks, dead time, record, copies.
+inputs on the Cortex-M7 (`cargo bench-m7`), and over 16 states on x86-64-v3
+(`controller-core/benches/instructions.sh`, callgrind; its vector unit does up to four
+operations in one instruction). In the cycle parts are inlined into each other, so that
+the sum is not the cycle; *the rest* is the difference: checks, dead time, record, copies.
+
+*flops* is what the algorithm of the part needs: one for an addition, subtraction,
+multiplication, division or square root, by the formulas below; loads, stores, selects
+and comparisons come on top. The scalar FPU of the Cortex-M7 does one or, in a
+multiply-accumulate, two of them per instruction.
+";
+
+const PEERS: &str = "
+Below the cycle: the same law by other libraries, on x86-64-v3 in double precision, full
+cycle with observer; `tests/peers/run.sh` makes these figures anew and checks the torques
+against the golden data.
 ";
 
 const STACK: &str = "
@@ -39,7 +61,13 @@ const STACK: &str = "
 
 Stack in bytes. *Seen* is the high-water mark of a painted stack over the adverse
 inputs and every tenth random one, *bound* the deepest path through the call graph of
-the disassembled image: every frame counted in full, no call left unresolved.
+the disassembled image: every frame counted in full, no call left unresolved. The
+constructor's includes arm and configuration, made on the stack from the tables on;
+the controller itself is the caller's. Limit of each bound: 12288 bytes.
+
+*Flash of the linked core*: constructor, cycle, observer and record with their tables, in
+one precision, no driver and no log: an image with them less the same image without.
+Limit: 65536 bytes.
 ";
 
 const ESTIMATE: &str = "
@@ -65,10 +93,18 @@ pub fn page(figures: &Figures) -> String {
         "| board | QEMU mps2-an500, `-icount shift=10` |\n| inputs | {} per row |\n",
         figures.inputs
     );
+    for peer in &figures.peers {
+        out += &format!("| {} | {} |\n", peer.name, peer.version);
+    }
     out += "\n## A full cycle\n\nInstructions.\n\n";
     out += &cycles(figures);
+    out += LIMITS;
     out += STAGES;
-    out += &stages(figures);
+    for job in jobs(figures) {
+        out += &stages(figures, job);
+    }
+    out += PEERS;
+    out += &formulas();
     out += STACK;
     out += &memory(figures);
     out += ESTIMATE;
@@ -119,27 +155,75 @@ fn heads(figures: &Figures) -> (String, String) {
     (names.collect(), "---|".repeat(figures.controllers.len()))
 }
 
-fn stages(figures: &Figures) -> String {
-    let (head, rule) = heads(figures);
-    let mut out = format!("\n| part |{head}\n|---|{rule}\n");
-    let names = figures.controllers.first().map(|c| &c.stages);
-    for (index, stage) in names.into_iter().flatten().enumerate() {
+/// The experiments, each once.
+fn jobs(figures: &Figures) -> Vec<&str> {
+    let mut jobs: Vec<&str> = Vec::new();
+    for controller in &figures.controllers {
+        if !jobs.contains(&controller.job.as_str()) {
+            jobs.push(&controller.job);
+        }
+    }
+    jobs
+}
+
+/// Parts, cycle and peers of one experiment, both precisions side by side.
+fn stages(figures: &Figures, job: &str) -> String {
+    let mut out = format!("\n### {job}, {} task rows\n\n| part |", rows(job));
+    let both: Vec<&Controller> = (figures.controllers.iter())
+        .filter(|controller| controller.job == job)
+        .collect();
+    let mut rule = String::from("|---|");
+    for Controller { precision, .. } in &both {
+        out += &format!(" flops {precision} | M7 {precision} | host {precision} |");
+        rule += "---|---|---|";
+    }
+    out += &format!("\n{rule}\n");
+    let host = |controller: &Controller, part: &str| {
+        let case = figures.host.get(&format!("{job} {}", controller.precision));
+        let count = case.and_then(|counts| counts.get(part));
+        count.map_or(String::new(), u64::to_string)
+    };
+    for (index, stage) in both.iter().flat_map(|c| &c.stages).enumerate() {
+        if both.first().is_none_or(|first| index >= first.stages.len()) {
+            break;
+        }
         out += &format!("| {} |", stage.name);
-        for controller in &figures.controllers {
-            let count = controller
-                .stages
-                .get(index)
-                .map_or(0, |stage| stage.cost.max);
-            out += &format!(" {count} |");
+        for controller in &both {
+            let own = controller.stages.get(index);
+            let (flops, count) = own.map_or((0, 0), |own| (own.flops, own.cost.max));
+            out += &format!(" {flops} | {count} | {} |", host(controller, &stage.name));
         }
         out.push('\n');
     }
-    out += "| the rest |";
-    for controller in &figures.controllers {
+    let mut rest = String::from("| the rest |");
+    let mut cycle = String::from("| **cycle** |");
+    for controller in &both {
         let parts: u64 = controller.stages.iter().map(|stage| stage.cost.max).sum();
-        out += &format!(" {} |", controller.cycle.max as i64 - parts as i64);
+        let (max, flops) = (
+            controller.cycle.max,
+            flops::total(job, &controller.precision),
+        );
+        rest += &format!(" | {} | |", max as i64 - parts as i64);
+        cycle += &format!(
+            " **{flops}** | **{max}** | **{}** |",
+            host(controller, "cycle")
+        );
     }
-    out + "\n"
+    out += &format!("{rest}\n{cycle}\n");
+    for peer in &figures.peers {
+        if let Some(count) = peer.cycle.get(job) {
+            out += &format!("| {} | | | {count} | | | |\n", peer.name);
+        }
+    }
+    out
+}
+
+fn formulas() -> String {
+    let mut out = String::from("\n| part | flops |\n|---|---|\n");
+    for (part, formula) in flops::FORMULAS {
+        out += &format!("| {part} | {formula} |\n");
+    }
+    out + "\n" + flops::LEGEND + "\n"
 }
 
 fn memory(figures: &Figures) -> String {
@@ -164,6 +248,10 @@ fn memory(figures: &Figures) -> String {
         bound(c.stack.init_bound)
     });
     row("code of the cycle", &|c| c.code.to_string());
+    row("flash of the linked core", &|c| {
+        let flash = figures.core_flash.get(&c.precision);
+        flash.map_or(String::new(), u64::to_string)
+    });
     for name in ["controller", "state", "step", "record"] {
         row(&format!("size of the {name}"), &|c| {
             let sizes = figures.sizes.get(&c.precision);
