@@ -83,11 +83,15 @@ mod target {
     #[entry]
     fn main() -> ! {
         super::everything();
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 
     #[panic_handler]
     fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        loop {}
+        loop {
+            cortex_m::asm::wfi();
+        }
     }
 }
