@@ -12,7 +12,7 @@ fn main() {
     let crate_dir = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
     let root = Path::new(&crate_dir).join("..");
     println!("cargo::rustc-link-search={}", root.display());
-    for image in ["selftest", "bench", "arm", "fri"] {
+    for image in ["selftest", "bench", "arm", "fri", "footprint"] {
         println!("cargo::rustc-link-arg-bin={image}=-Tlink.x");
         println!("cargo::rustc-link-arg-bin={image}=--nmagic");
     }

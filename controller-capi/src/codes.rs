@@ -135,6 +135,7 @@ pub(crate) fn of_model(error: &ModelError) -> StratumResult {
 
 pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
     match error {
+        ConfigError::Model(error) => of_model(error),
         ConfigError::Rows { .. } => STRATUM_CONFIG_ROWS,
         ConfigError::NoAxis { .. } => STRATUM_CONFIG_NO_AXIS,
         ConfigError::PointLink { .. } => STRATUM_CONFIG_POINT_LINK,

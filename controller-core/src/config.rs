@@ -8,7 +8,7 @@ use crate::damping::{self, DampingRate};
 use crate::joint::{DOF, JointMatrix, JointVector, Matrix3};
 use crate::law::{NullDamping, NullSpace};
 use crate::linalg::Cholesky;
-use crate::model::ArmModel;
+use crate::model::{ArmModel, ModelError};
 use crate::real::Real;
 use crate::task::{MAX_LEVELS, MAX_ROWS, Task};
 
@@ -72,6 +72,9 @@ impl Gain {
 #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ConfigError {
+    /// The tables of the arm. [`ControllerConfig::validate`] never says this: it is
+    /// there so that arm and configuration fail with one type.
+    Model(ModelError),
     /// The tasks have no rows, or more than there are joints.
     Rows {
         /// Rows of all levels.
@@ -171,6 +174,7 @@ impl fmt::Display for ConfigError {
             write!(f, "{}", gain.name())
         };
         match *self {
+            Self::Model(error) => error.fmt(f),
             Self::Rows { rows } => {
                 write!(
                     f,
@@ -263,6 +267,12 @@ impl fmt::Display for ConfigError {
 
 impl core::error::Error for ConfigError {}
 
+impl From<ModelError> for ConfigError {
+    fn from(error: ModelError) -> Self {
+        Self::Model(error)
+    }
+}
+
 /// Farthest point of a task from its link's frame \[m\].
 const POINT_OFFSET_MAX: f64 = 10.0;
 
@@ -344,6 +354,9 @@ impl<T: Real> ControllerConfig<T> {
     }
 }
 
+/// One level. Behind a call: its matrices leave the stack before the damping is
+/// looked at.
+#[inline(never)]
 fn validate_task<T: Real>(level: usize, task: &Task<T>) -> Result<(), ConfigError> {
     if task.axes.count() == 0 {
         return Err(ConfigError::NoAxis { level });

@@ -127,8 +127,21 @@ impl<T: Real> Controller<T> {
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be.
     pub fn new(model: &ArmModel<T>, config: &ControllerConfig<T>) -> Result<Self, ConfigError> {
-        let fastest_mode = config.validate(model)?;
-        Ok(Self {
+        match config.validate(model) {
+            Ok(fastest_mode) => Ok(Self::assembled(model, config, fastest_mode)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Behind a call, so that the parts are copied into the place of the result
+    /// and nowhere else.
+    #[inline(never)]
+    fn assembled(
+        model: &ArmModel<T>,
+        config: &ControllerConfig<T>,
+        fastest_mode: DampingRate,
+    ) -> Self {
+        Self {
             model: *model,
             tasks: config.tasks.clone(),
             null_space: config.null_space,
@@ -136,7 +149,7 @@ impl<T: Real> Controller<T> {
             cycle_s: config.cycle_s,
             dead_cycles: config.dead_cycles,
             fastest_mode,
-        })
+        }
     }
 
     /// The arm.

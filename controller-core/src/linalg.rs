@@ -175,17 +175,17 @@ impl<T: Real> Cholesky<T> {
         y
     }
 
-    /// L^-1 B L^-T, for a symmetric B.
+    /// L^-1 B L^-T, for a symmetric B. For construction: small, not fast.
     #[must_use]
     pub fn whiten(&self, b: &JointMatrix<T>) -> JointMatrix<T> {
-        let mut half: JointMatrix<T> = zeros();
-        for j in 0..DOF {
-            half.set_column(j, &self.solve_lower(&b.column(j).into_owned()));
-        }
-        let half = half.transpose();
-        let mut whole: JointMatrix<T> = zeros();
-        for j in 0..DOF {
-            whole.set_column(j, &self.solve_lower(&half.column(j).into_owned()));
+        let mut whole = *b;
+        // (L^-1 B)^T = B L^-T, and once more the same.
+        for _ in 0..2 {
+            for j in 0..DOF {
+                let solved = self.solve_lower(&whole.column(j).into_owned());
+                whole.set_column(j, &solved);
+            }
+            whole.transpose_mut();
         }
         whole
     }

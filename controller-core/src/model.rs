@@ -67,6 +67,7 @@ pub struct ArmParameters {
 
 /// Why parameter tables do not make a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ModelError {
     /// A number is infinite or NaN.
@@ -195,13 +196,24 @@ impl<T: Real> ArmModel<T> {
     /// is not finite, a mass or limit that is not positive, an inertia that no
     /// body can have.
     pub fn new(parameters: &ArmParameters) -> Result<Self, ModelError> {
-        validate(parameters)?;
+        match validate(parameters) {
+            Ok(()) => Ok(Self::prepared(parameters)),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Behind a call, so that the model is built in the place of the result.
+    #[inline(never)]
+    fn prepared(parameters: &ArmParameters) -> Self {
         let column = |pick: fn(&LinkParameters) -> f64| {
             let mut values = parameters.links.iter().map(pick);
             JointVector::from_fn(|_, _| T::from_f64(values.next().unwrap_or(0.0)))
         };
-        Ok(Self {
-            links: parameters.links.map(|link| Link::new(&link)),
+        Self {
+            links: core::array::from_fn(|i| match parameters.links.get(i) {
+                Some(link) => Link::new(link),
+                None => Link::fixed(),
+            }),
             base: Link::fixed(),
             base_height: T::from_f64(parameters.base_height),
             gravity: vector(parameters.gravity),
@@ -209,7 +221,7 @@ impl<T: Real> ArmModel<T> {
             speed_limit: column(|link| link.speed_limit),
             torque_limit: column(|link| link.torque_limit),
             parameters: *parameters,
-        })
+        }
     }
 
     /// Largest |q| \[rad\] per joint.

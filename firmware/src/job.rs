@@ -1,18 +1,17 @@
 //! The two experiments that the target runs, as constants: the same as the
 //! built-in scenarios of that name, which a test checks.
 
-use core::fmt;
-
 use controller_core::config::{ConfigError, ControllerConfig};
 use controller_core::controller::Controller;
 use controller_core::joint::{DOF, JointVector, Vector3, diagonal};
 use controller_core::kinematics::LinkPoint;
 use controller_core::law::{NullDamping, NullSpace, Posture};
 use controller_core::measurement::Reference;
-use controller_core::model::{ArmModel, LWR_IV, ModelError};
+use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::real::Real;
 use controller_core::task::{Axes, Task};
 use controller_core::trajectory::{Plane, Trajectory};
+use heapless::Vec;
 
 /// Nominal cycle of both \[s\].
 pub const CYCLE_S: f64 = 0.002;
@@ -73,37 +72,16 @@ pub struct Job<T: Real> {
     circle: Trajectory<T>,
 }
 
-/// Why a job cannot be built: never for the constants here.
-#[derive(Clone, Copy, Debug)]
-pub enum JobError {
-    /// The arm's tables.
-    Model(ModelError),
-    /// The controller's configuration.
-    Config(ConfigError),
-}
-
-impl fmt::Display for JobError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Model(error) => error.fmt(f),
-            Self::Config(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for JobError {}
-
-/// The configuration of an experiment.
+/// The configuration of an experiment, made in the caller's place for it.
 #[must_use]
+#[inline(never)]
 pub fn config<T: Real>(kind: JobKind) -> ControllerConfig<T> {
     let task = |link, offset: [f64; 3], axes| {
         let offset = Vector3::from(offset.map(T::from_f64));
         Task::uniform(LinkPoint { link, offset }, axes, 400.0, 40.0)
     };
-    let flange = task(7, [0.0, 0.0, LWR_IV.flange], Axes::XYZ);
-    let wrist = (kind == JobKind::Case1).then(|| task(5, [0.0; 3], Axes::XY));
-    ControllerConfig {
-        tasks: core::iter::once(flange).chain(wrist).collect(),
+    let mut config = ControllerConfig {
+        tasks: Vec::new(),
         null_space: NullSpace {
             stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
             damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
@@ -112,16 +90,27 @@ pub fn config<T: Real>(kind: JobKind) -> ControllerConfig<T> {
         observer_gain: JointVector::from([T::from_f64(50.0); DOF]),
         cycle_s: T::from_f64(CYCLE_S),
         dead_cycles: 0,
+    };
+    // There is a place for every level.
+    let flange = task(7, [0.0, 0.0, LWR_IV.flange], Axes::XYZ);
+    let _ = config.tasks.push(flange);
+    if kind == JobKind::Case1 {
+        let _ = config.tasks.push(task(5, [0.0; 3], Axes::XY));
     }
+    config
 }
 
 /// The controller of an experiment, from the arm's tables on.
 ///
 /// # Errors
 /// Never for these constants.
-pub fn controller<T: Real>(kind: JobKind) -> Result<Controller<T>, JobError> {
-    let model = ArmModel::new(&LWR_IV).map_err(JobError::Model)?;
-    Controller::new(&model, &config(kind)).map_err(JobError::Config)
+pub fn controller<T: Real>(kind: JobKind) -> Result<Controller<T>, ConfigError> {
+    // The model stays in the result that brought it: taken out, it would lie on the
+    // stack twice.
+    match &ArmModel::new(&LWR_IV) {
+        Ok(model) => Controller::new(model, &config(kind)),
+        Err(error) => Err((*error).into()),
+    }
 }
 
 impl<T: Real> Job<T> {
@@ -129,7 +118,7 @@ impl<T: Real> Job<T> {
     ///
     /// # Errors
     /// Never for these constants.
-    pub fn new(kind: JobKind) -> Result<Self, JobError> {
+    pub fn new(kind: JobKind) -> Result<Self, ConfigError> {
         let controller = controller(kind)?;
         let start = kind.start_deg().map(f64::to_radians).map(T::from_f64);
         let (radius_m, period_s) = kind.flange_circle();

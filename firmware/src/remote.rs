@@ -4,12 +4,13 @@
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
 use bridge::transport::DatagramLink;
+use controller_core::config::ConfigError;
 use controller_core::law::NullDamping;
 use controller_core::measurement::Reference;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::guard::{Cause, Guard};
-use crate::job::{self, Job, JobError, JobKind};
+use crate::job::{self, Job, JobKind};
 
 /// Longest datagram of the link.
 const BUFFER: usize = 1024;
@@ -24,7 +25,7 @@ pub const DURATION_S: f64 = 20.0;
 ///
 /// # Errors
 /// Never for the constants of a job.
-pub fn config(kind: JobKind) -> Result<SessionConfig, JobError> {
+pub fn config(kind: JobKind) -> Result<SessionConfig, ConfigError> {
     let job = Job::<f64>::new(kind)?;
     let mut controller = job::config(kind);
     controller.null_space.damping = NullDamping::Inertia(DAMPING_RATE);
@@ -50,7 +51,7 @@ impl JobSource {
     ///
     /// # Errors
     /// Never for the constants of a job.
-    pub fn new(kind: JobKind) -> Result<Self, JobError> {
+    pub fn new(kind: JobKind) -> Result<Self, ConfigError> {
         Ok(Self {
             job: Job::new(kind)?,
             origin: Reference::new(),

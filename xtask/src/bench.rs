@@ -1,4 +1,5 @@
-//! Instructions, stack and memory of the cycle, against the committed figures.
+//! Instructions, stack and memory of constructor and cycle, against the committed
+//! figures and the limits.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,40 +8,71 @@ use std::process::Command;
 
 use crate::Outcome;
 use crate::figures::Figures;
-use crate::stack::CallGraph;
-use crate::table;
+use crate::stack::{Below, CallGraph};
 use crate::tools::{Need, Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
+use crate::{host, limits, table};
 
 const JSON: &str = "docs/timing.json";
 const TABLE: &str = "docs/timing.md";
 
+/// The calls behind a bound are printed with this experiment: they are the same with
+/// every other.
+const EXPLAINED: &str = "two-level";
+
 /// How much a figure may grow before the check fails.
 const ALLOWANCE: f64 = 0.02;
 
-/// Measures; compares with the committed figures, or writes them anew.
+/// Measures; compares with limits and committed figures, or writes them anew.
 pub fn run(write: bool) -> Outcome {
     let tools = Tools::find(&[Need::Emulator, Need::LlvmTools])?;
-    let figures = measure(&tools)?;
+    let valgrind = if write {
+        host::count(&tools.root)?
+    } else {
+        None
+    };
+    let mut figures = measure(&tools)?;
     print!("{}", table::summary(&figures));
     let (json, text) = (tools.root.join(JSON), tools.root.join(TABLE));
+    let committed = fs::read_to_string(&json)
+        .map_err(Trouble::from)
+        .and_then(|text| {
+            serde_json::from_str::<Figures>(&text)
+                .map_err(|error| Trouble::Content(format!("{JSON}: {error}")))
+        });
+
+    let mut lines = limits::exceeded(&figures);
+    if lines.is_empty() {
+        println!("no figure is beyond its limit");
+    }
     if write {
+        let before = committed
+            .ok()
+            .and_then(|mut old| old.tools.remove("valgrind"));
+        if let Some(version) = valgrind.or(before) {
+            figures.tools.insert("valgrind".into(), version);
+        }
         let data = serde_json::to_string_pretty(&figures)
             .map_err(|error| Trouble::Content(error.to_string()))?;
         fs::write(&json, data + "\n")?;
         fs::write(&text, table::page(&figures))?;
         println!("written: {JSON}, {TABLE}");
-        return Ok(true);
+    } else {
+        let committed = committed?;
+        let larger = compare(&figures.bounded(), &committed.bounded());
+        if larger.is_empty() {
+            println!("no figure is more than 2 % above {JSON}");
+        }
+        lines.extend(larger);
+        if figures.host != committed.host || figures.peers != committed.peers {
+            lines.push(format!(
+                "{JSON} does not have the committed counts of host and peers: cargo bench-m7 --write"
+            ));
+        }
     }
-    let committed: Figures = serde_json::from_str(&fs::read_to_string(&json)?)
-        .map_err(|error| Trouble::Content(format!("{JSON}: {error}")))?;
-    let larger = compare(&figures.bounded(), &committed.bounded());
-    for line in &larger {
+    for line in &lines {
         println!("{line}");
     }
-    if larger.is_empty() {
-        println!("no figure is more than 2 % above {JSON}");
-    }
-    Ok(larger.is_empty())
+    Ok(lines.is_empty())
 }
 
 fn measure(tools: &Tools) -> Result<Figures, Trouble> {
@@ -64,22 +96,57 @@ fn measure(tools: &Tools) -> Result<Figures, Trouble> {
     let graph = CallGraph::of(&image)?;
     for controller in &mut figures.controllers {
         let precision = &controller.precision;
-        let cycle = graph.below(&format!("cycle_{precision}"));
-        let init = graph.below(&format!("build_{precision}"));
-        for trouble in [&cycle, &init].into_iter().filter_map(|r| r.as_ref().err()) {
-            println!("{trouble}");
+        let cycle = graph.below(&format!("cycle_{precision}"))?;
+        let init = graph.below(&format!("build_{precision}"))?;
+        if controller.job == EXPLAINED {
+            explain(&format!("cycle {precision}"), &cycle);
+            explain(&format!("constructor {precision}"), &init);
         }
-        controller.code = cycle.as_ref().map_or(0, |below| below.code);
-        controller.stack.cycle_bound = cycle.ok().map(|below| below.stack);
-        controller.stack.init_bound = init.ok().map(|below| below.stack);
+        controller.code = cycle.code;
+        controller.stack.cycle_bound = cycle.stack.ok();
+        controller.stack.init_bound = init.stack.ok();
     }
+    figures.core_flash = core_flash(tools)?;
+    figures.host = host::counts(&tools.root)?;
+    figures.peers = host::peers(&tools.root)?;
     figures.image = memory(&tools.image("arm", &[])?)?;
     figures.tools = BTreeMap::from([
         ("rustc".into(), first_line("rustc", &["--version"])?),
         ("qemu".into(), qemu_version()?),
-        ("profile".into(), "release, target-cpu=cortex-m7".into()),
+        (
+            "profile".into(),
+            "firmware (release, fat LTO, one codegen unit), target-cpu=cortex-m7; host: release, target-cpu=x86-64-v3".into(),
+        ),
     ]);
     Ok(figures)
+}
+
+/// Says why there is no bound, or which calls make it.
+fn explain(what: &str, below: &Below) {
+    match &below.stack {
+        Err(why) => println!("stack of the {what}: {why}"),
+        Ok(bytes) => {
+            println!("stack of the {what}: {bytes} bytes by");
+            for (frame, name) in &below.deepest {
+                println!("{frame:8} {name}");
+            }
+        }
+    }
+}
+
+/// Flash of constructor, cycle and record alone: the image `footprint` with them less
+/// the one without.
+fn core_flash(tools: &Tools) -> Result<BTreeMap<String, u64>, Trouble> {
+    let flash = |features: &[&str]| -> Result<u64, Trouble> {
+        let sizes = memory(&tools.image("footprint", features)?)?;
+        Ok(sizes.get("flash").copied().unwrap_or(0))
+    };
+    let empty = flash(&[])?;
+    let mut sizes = BTreeMap::new();
+    for (precision, feature) in [("f64", "footprint-f64"), ("f32", "footprint-f32")] {
+        sizes.insert(precision.into(), flash(&[feature])?.saturating_sub(empty));
+    }
+    Ok(sizes)
 }
 
 /// Flash and RAM of an image.

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::flops;
+use crate::host::{Counts, Peer};
 use crate::tools::Trouble;
 
 /// Everything that is measured.
@@ -19,6 +21,15 @@ pub struct Figures {
     pub sizes: BTreeMap<String, BTreeMap<String, u64>>,
     /// Memory of the application image \[bytes\].
     pub image: BTreeMap<String, u64>,
+    /// Flash of constructor, cycle and record alone \[bytes\], by precision.
+    #[serde(default)]
+    pub core_flash: BTreeMap<String, u64>,
+    /// Instructions on the host, by controller and part.
+    #[serde(default)]
+    pub host: Counts,
+    /// The same law by other libraries, on the host.
+    #[serde(default)]
+    pub peers: Vec<Peer>,
 }
 
 /// One controller in one precision.
@@ -65,6 +76,9 @@ pub struct Stage {
     /// Instructions.
     #[serde(flatten)]
     pub cost: Cost,
+    /// Floating-point operations that it needs, [`crate::flops`].
+    #[serde(default)]
+    pub flops: u64,
 }
 
 /// Seen by painting, and bound from the code.
@@ -129,7 +143,10 @@ impl Figures {
                 let controller = self.controllers.last_mut()?;
                 match name.join(" ") {
                     name if name == "cycle" => controller.cycle = cost,
-                    name => controller.stages.push(Stage { name, cost }),
+                    name => {
+                        let flops = flops::of(&name, &controller.job, &controller.precision)?;
+                        controller.stages.push(Stage { name, cost, flops });
+                    }
                 }
             }
             ["worst", _, _, ref input @ ..] => {
@@ -188,6 +205,12 @@ impl Figures {
             for (name, &bytes) in sizes {
                 all.insert(format!("{precision}: {name}, bytes"), bytes);
             }
+        }
+        for (precision, &bytes) in &self.core_flash {
+            all.insert(
+                format!("{precision}: flash of the linked core, bytes"),
+                bytes,
+            );
         }
         for (name, &bytes) in &self.image {
             all.insert(format!("application image: {name}, bytes"), bytes);

@@ -7,7 +7,10 @@
 mod arm;
 mod bench;
 mod figures;
+mod flops;
 mod fri;
+mod host;
+mod limits;
 mod panic_free;
 mod selftest;
 mod stack;
@@ -22,8 +25,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 
 selftest-m7 [CYCLES]   torques of host and Cortex-M7, bit for bit; default 10000 cycles
 panic-free-m7          constructor and cycle link without a panic, and not with one
-bench-m7 [--write]     instructions, stack and memory against docs/timing.json;
-                       --write makes docs/timing.md and docs/timing.json anew
+bench-m7 [--write]     instructions, stack and flash against docs/timing.json and limits;
+                       --write makes docs/timing.md and docs/timing.json anew, and
+                       counts the host's instructions where valgrind is there
 arm-m7                 the application image; its log needs defmt-print
 fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a serial
                        port: run hil-sim serve beside it

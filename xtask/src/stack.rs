@@ -32,11 +32,13 @@ struct Function {
 }
 
 /// What is below a function, itself included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Below {
-    /// Largest use of the stack \[bytes\].
-    pub stack: u64,
-    /// Size of all code that can be reached \[bytes\].
+    /// Largest use of the stack \[bytes\]; or why there is no bound.
+    pub stack: Result<u64, String>,
+    /// The calls that use it, with the frame of each \[bytes\].
+    pub deepest: Vec<(u64, String)>,
+    /// Size of all code that can be reached \[bytes\], as far as calls can be followed.
     pub code: u64,
 }
 
@@ -86,15 +88,40 @@ impl CallGraph {
             )));
         };
         let mut depths = BTreeMap::new();
-        let stack = self.depth(start, &mut Vec::new(), &mut depths)?;
-        let sizes = depths.keys().filter_map(|start| {
-            let function = self.functions.get(start)?;
-            Some(function.end - start)
-        });
+        let stack = self.depth(start, &mut Vec::new(), &mut depths);
+        let deepest = match stack {
+            Ok(_) => self.deepest(start, &depths),
+            Err(_) => Vec::new(),
+        };
         Ok(Below {
             stack,
-            code: sizes.sum(),
+            deepest,
+            code: self.code(start),
         })
+    }
+
+    fn code(&self, start: u64) -> u64 {
+        let (mut reached, mut open) = (BTreeSet::new(), vec![start]);
+        let mut code = 0;
+        while let Some(address) = open.pop() {
+            if let Some(function) = self.functions.get(&address)
+                && reached.insert(address)
+            {
+                code += function.end - address;
+                open.extend(&function.callees);
+            }
+        }
+        code
+    }
+
+    fn deepest(&self, start: u64, depths: &BTreeMap<u64, u64>) -> Vec<(u64, String)> {
+        let (mut path, mut next) = (Vec::new(), Some(start));
+        while let Some(function) = next.and_then(|address| self.functions.get(&address)) {
+            path.push((function.frame, function.name.clone()));
+            let depth = |callee: &&u64| depths.get(callee).copied();
+            next = function.callees.iter().max_by_key(depth).copied();
+        }
+        path
     }
 
     fn depth(
@@ -102,21 +129,19 @@ impl CallGraph {
         start: u64,
         path: &mut Vec<u64>,
         depths: &mut BTreeMap<u64, u64>,
-    ) -> Result<u64, Trouble> {
+    ) -> Result<u64, String> {
         if let Some(&depth) = depths.get(&start) {
             return Ok(depth);
         }
         let Some(function) = self.functions.get(&start) else {
-            return Err(Trouble::Content(format!(
-                "a call into nothing at {start:x}"
-            )));
+            return Err(format!("a call into nothing at {start:x}"));
         };
         let name = &function.name;
         if path.contains(&start) {
-            return Err(Trouble::Content(format!("{name} calls itself: no bound")));
+            return Err(format!("{name} calls itself: no bound"));
         }
         if let Some(line) = &function.opaque {
-            return Err(Trouble::Content(format!("no bound through {name}: {line}")));
+            return Err(format!("no bound through {name}: {line}"));
         }
         path.push(start);
         let mut deepest = 0;
@@ -229,15 +254,19 @@ mod tests {
     #[test]
     fn frames_add_up_along_the_deepest_path() {
         let graph = CallGraph::parse(IMAGE);
-        let below = graph.below("outer").expect("a bound");
-        assert_eq!(below.stack, 16 + 16 + 0x108 + 8);
+        let below = graph.below("outer").expect("a function");
+        assert_eq!(below.stack, Ok(16 + 16 + 0x108 + 8));
         assert_eq!(below.code, 0x12 + 10 + 4);
+        let names: Vec<&str> = below.deepest.iter().map(|(_, name)| &name[..]).collect();
+        assert_eq!(names, ["a::outer::h1", "a::inner::h2"]);
     }
 
     #[test]
     fn what_cannot_be_followed_has_no_bound() {
         let graph = CallGraph::parse(IMAGE);
-        assert!(graph.below("open").is_err());
+        let open = graph.below("open").expect("a function");
+        assert!(open.stack.is_err());
+        assert_eq!(open.code, 4);
         assert!(graph.below("missing").is_err());
     }
 
@@ -248,6 +277,7 @@ mod tests {
      100:      \tpush\t{r7, lr}
      102:      \tbl\t0x100 <a::round::h1> @ imm = #-4
 ";
-        assert!(CallGraph::parse(text).below("round").is_err());
+        let below = CallGraph::parse(text).below("round").expect("a function");
+        assert!(below.stack.is_err());
     }
 }

@@ -2,6 +2,8 @@
 //! flange and null space) and `case-1` ("3 levels", flange, wrist in the plane
 //! and null space), in random and adversarial states.
 
+pub mod stages;
+
 use controller_core::config::ControllerConfig;
 use controller_core::controller::Controller;
 use controller_core::joint::{JointState, JointVector, Vector3, diagonal};

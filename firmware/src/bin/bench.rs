@@ -4,6 +4,7 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+use controller_core::config::ConfigError;
 use controller_core::controller::{Controller, Step};
 use controller_core::measurement::{Measurement, Reference};
 use firmware::job::{self, JobKind};
@@ -20,8 +21,8 @@ use cortex_m_semihosting::hprintln as say;
 macro_rules! measured {
     ($float:ident, $build:ident, $cycle:ident) => {
         #[inline(never)]
-        fn $build(kind: JobKind) -> Option<Controller<$float>> {
-            job::controller(kind).ok()
+        fn $build(kind: JobKind) -> Result<Controller<$float>, ConfigError> {
+            job::controller(kind)
         }
 
         #[inline(never)]
@@ -68,10 +69,10 @@ fn main() {
     }
 
     for kind in JobKind::ALL {
-        if let Some(mut rig) = build_f64(kind).map(Rig::new) {
+        if let Ok(mut rig) = build_f64(kind).map(Rig::new) {
             print_inputs(kind.name(), "f64", &survey(&mut rig, &Still, cycle_f64));
         }
-        if let Some(mut rig) = build_f32(kind).map(Rig::new) {
+        if let Ok(mut rig) = build_f32(kind).map(Rig::new) {
             print_inputs(kind.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
         }
     }
@@ -130,14 +131,14 @@ mod target {
     fn measure<T: Number>(
         kind: JobKind,
         board: &Board,
-        build: fn(JobKind) -> Option<Controller<T>>,
+        build: fn(JobKind) -> Result<Controller<T>, ConfigError>,
         cycle: CycleOf<T>,
     ) -> bool {
         let name = kind.name();
         let init = high_water(|| {
-            black_box(build(black_box(kind)));
+            let _ = black_box(build(black_box(kind)));
         });
-        let Some(mut rig) = build(kind).map(Rig::new) else {
+        let Ok(mut rig) = build(kind).map(Rig::new) else {
             return false;
         };
         let found = survey(&mut rig, board, cycle);

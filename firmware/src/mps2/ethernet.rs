@@ -33,6 +33,12 @@ pub struct Memory {
     sent: [PacketMetadata; WAITING],
 }
 
+impl Default for Memory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Memory {
     /// Empty.
     #[must_use]

@@ -1,0 +1,97 @@
+//! How much flash the core takes: constructor, cycle and record and nothing else, in
+//! the precision that the features `footprint-f64` and `footprint-f32` choose. Built
+//! without either it is what every image has; `cargo bench-m7` reports the difference.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(any(feature = "footprint-f64", feature = "footprint-f32"))]
+mod core_of {
+    use core::hint::black_box;
+
+    use controller_core::config::{ConfigError, ControllerConfig};
+    use controller_core::controller::{Controller, ControllerState};
+    use controller_core::measurement::{Measurement, Reference};
+    use controller_core::model::{ArmModel, LWR_IV};
+    use controller_core::real::Real;
+    use controller_core::record::Recorder;
+
+    /// Everything that a cycle needs, with nothing known to the compiler: whatever
+    /// the configuration asks for has to be there.
+    pub fn run<T: Real>(
+        config: &ControllerConfig<T>,
+        measurement: &Measurement<T>,
+        reference: &Reference<T>,
+    ) -> Result<(), ConfigError> {
+        let model = ArmModel::new(black_box(&LWR_IV))?;
+        let controller = Controller::new(&model, black_box(config))?;
+        let mut state = ControllerState::new();
+        let mut recorder = Recorder::<T, 4>::new();
+        let step = controller.step(&mut state, black_box(measurement), black_box(reference));
+        recorder.push(measurement, &step);
+        state.applied(black_box(&step.torque));
+        state.skip();
+        state.reset();
+        black_box((&state, &recorder));
+        Ok(())
+    }
+
+    /// Bytes that no initialiser had to write: the caller's data are not the core's.
+    pub fn all<T: Real>() {
+        use controller_core::joint::zeros;
+        use controller_core::law::{NullDamping, NullSpace, Posture};
+        let config = ControllerConfig {
+            tasks: heapless::Vec::new(),
+            null_space: NullSpace {
+                stiffness: zeros(),
+                damping: NullDamping::Joint(zeros()),
+                posture: Posture::Constant,
+            },
+            observer_gain: zeros(),
+            cycle_s: T::ZERO,
+            dead_cycles: 0,
+        };
+        let measurement = Measurement {
+            q: zeros(),
+            dq: zeros(),
+            interval_s: T::ZERO,
+        };
+        let _ = black_box(run(
+            black_box(&config),
+            black_box(&measurement),
+            black_box(&Reference::new()),
+        ));
+    }
+}
+
+fn everything() {
+    #[cfg(feature = "footprint-f64")]
+    core_of::all::<f64>();
+    #[cfg(feature = "footprint-f32")]
+    core_of::all::<f32>();
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    everything();
+    println!("a size is that of the image for the target");
+}
+
+#[cfg(target_os = "none")]
+mod target {
+    use cortex_m_rt::entry;
+
+    #[entry]
+    fn main() -> ! {
+        super::everything();
+        loop {
+            cortex_m::asm::wfi();
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        loop {
+            cortex_m::asm::wfi();
+        }
+    }
+}
