@@ -228,8 +228,7 @@ impl<T: Real> Controller<T> {
             Some(fault) => Err(fault),
             None => plausible(&self.model, self.cycle_s, measurement),
         };
-        let checked = entry
-            .and_then(|joints| usable(reference, self.tasks.len()).map(|()| joints));
+        let checked = entry.and_then(|joints| usable(reference, self.tasks.len()).map(|()| joints));
         match checked {
             Ok(joints) => self.cycle(state, &joints, measurement.interval_s, reference, law),
             Err(fault) => state.held(fault),

@@ -94,14 +94,20 @@ impl<T: Real> Observer<T> {
 /// The torques of the last cycles: which of them acts now, behind a dead time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DeadTime<T: Real> {
-    sent: [JointVector<T>; DEAD_CYCLES_MAX as usize],
+    /// A ring.
+    sent: [JointVector<T>; REMEMBERED],
+    /// Where the next torque goes.
+    place: usize,
     started: bool,
 }
+
+const REMEMBERED: usize = DEAD_CYCLES_MAX as usize;
 
 impl<T: Real> DeadTime<T> {
     pub const fn new() -> Self {
         Self {
-            sent: [zeros(); DEAD_CYCLES_MAX as usize],
+            sent: [zeros(); REMEMBERED],
+            place: 0,
             started: false,
         }
     }
@@ -115,24 +121,18 @@ impl<T: Real> DeadTime<T> {
         torque: &JointVector<T>,
         before: &JointVector<T>,
     ) -> JointVector<T> {
-        if cycles == 0 {
+        let ago = usize::from(cycles).min(REMEMBERED);
+        if ago == 0 {
             return *torque;
         }
         if !self.started {
-            self.sent = [*before; DEAD_CYCLES_MAX as usize];
+            self.sent = [*before; REMEMBERED];
             self.started = true;
         }
-        let acting = self
-            .sent
-            .iter()
-            .take(usize::from(cycles))
-            .next_back()
-            .unwrap_or(torque);
-        let acting = *acting;
-        let mut next = *torque;
-        for sent in &mut self.sent {
-            core::mem::swap(sent, &mut next);
-        }
+        let acting = self.sent[(self.place + REMEMBERED - ago) % REMEMBERED];
+        self.place %= REMEMBERED;
+        self.sent[self.place] = *torque;
+        self.place = (self.place + 1) % REMEMBERED;
         acting
     }
 }

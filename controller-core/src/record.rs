@@ -68,7 +68,11 @@ impl<T: Real, const N: usize> Recorder<T, N> {
             place.torque = step.torque;
             place.residual = step.residual;
             place.status = step.status;
-            self.place = if self.place + 1 < N { self.place + 1 } else { 0 };
+            self.place = if self.place + 1 < N {
+                self.place + 1
+            } else {
+                0
+            };
             self.taken = N.min(self.taken + 1);
         }
         self.next = self.next.wrapping_add(1);

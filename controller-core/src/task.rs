@@ -256,7 +256,11 @@ impl<T: Real> TaskRows<T> {
         let level = Level::new(self.count(), task, reference, &motion.dx, |reference| {
             reference.x - motion.x
         });
-        self.push(&level, state, &kinematics.point_jacobian(task.point.link, &motion));
+        self.push(
+            &level,
+            state,
+            &kinematics.point_jacobian(task.point.link, &motion),
+        );
     }
 
     #[inline(always)]
@@ -271,9 +275,15 @@ impl<T: Real> TaskRows<T> {
             rotation,
             angular_velocity,
         } = kinematics.link(task.point.link);
-        let level = Level::new(self.count(), task, reference, &angular_velocity, |reference| {
-            orientation::error(&reference.orientation, &orientation::of_rotation(&rotation))
-        });
+        let level = Level::new(
+            self.count(),
+            task,
+            reference,
+            &angular_velocity,
+            |reference| {
+                orientation::error(&reference.orientation, &orientation::of_rotation(&rotation))
+            },
+        );
         self.push(&level, state, &kinematics.angular_jacobian(task.point.link));
     }
 

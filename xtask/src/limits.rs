@@ -43,12 +43,17 @@ fn of_controller(controller: &Controller) -> Vec<String> {
             cycle.min, cycle.max
         ));
     }
-    for (what, bound) in [
-        ("cycle", stack.cycle_bound),
-        ("constructor", stack.init_bound),
+    for (what, bound, seen) in [
+        ("cycle", stack.cycle_bound, stack.cycle_seen),
+        ("constructor", stack.init_bound, stack.init_seen),
     ] {
         let name = format!("{of}: stack bound of the {what}, bytes");
         lines.extend(above(name, bound, STACK));
+        if bound.is_some_and(|bound| bound < seen) {
+            lines.push(format!(
+                "{of}: stack of the {what} seen is {seen} bytes, above its bound"
+            ));
+        }
     }
     lines
 }
@@ -103,5 +108,11 @@ mod tests {
         assert_eq!(exceeded(&figures(9_000, Some(1), FLASH + 1)).len(), 2);
         // Ten instructions are too much of a spread here.
         assert_eq!(exceeded(&figures(1_000, Some(1), 1)).len(), 2);
+        let mut seen = figures(9_000, Some(1000), 1);
+        seen.controllers[0].stack.init_seen = 1004;
+        assert_eq!(
+            exceeded(&seen),
+            ["case-1 f64: stack of the constructor seen is 1004 bytes, above its bound"]
+        );
     }
 }

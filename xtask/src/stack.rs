@@ -68,6 +68,11 @@ impl CallGraph {
                 function.read(mnemonic, operands);
             }
         }
+        // The last instruction of a function may be a short one.
+        let starts: Vec<u64> = functions.keys().copied().collect();
+        for (function, &next) in functions.values_mut().zip(starts.iter().skip(1)) {
+            function.end = function.end.min(next);
+        }
         // Branches within a function are no calls.
         for (&start, function) in &mut functions {
             let own = start..function.end;
@@ -259,6 +264,22 @@ mod tests {
         assert_eq!(below.code, 0x12 + 10 + 4);
         let names: Vec<&str> = below.deepest.iter().map(|(_, name)| &name[..]).collect();
         assert_eq!(names, ["a::outer::h1", "a::inner::h2"]);
+    }
+
+    #[test]
+    fn the_neighbour_behind_a_short_instruction_is_called() {
+        let text = "
+00000100 <a::first::h1>:
+     100:      \tpush\t{r7, lr}
+     102:      \tbl\t0x108 <a::second::h2> @ imm = #0x2
+     106:      \tpop\t{r7, pc}
+00000108 <a::second::h2>:
+     108:      \tsub\tsp, #0x10
+     10a:      \tbx\tlr
+";
+        let below = CallGraph::parse(text).below("first").expect("a function");
+        assert_eq!(below.stack, Ok(8 + 16));
+        assert_eq!(below.code, 8 + 6);
     }
 
     #[test]
