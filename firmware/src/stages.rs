@@ -220,7 +220,16 @@ fn stage_costs<T: Real>(
     let posture = &reference.posture;
 
     let kinematics = timed!(clock, times, Kinematics::new, model, joints);
-    let dynamics = timed!(clock, times, Dynamics::new, model, &kinematics, joints);
+    let mut dynamics = Dynamics::empty();
+    timed!(
+        clock,
+        times,
+        Dynamics::update,
+        &mut dynamics,
+        model,
+        &kinematics,
+        joints
+    );
     let residual = timed!(
         clock,
         times,
@@ -230,10 +239,12 @@ fn stage_costs<T: Real>(
         interval_s,
         &dynamics.momentum
     );
-    let rows = timed!(
+    let mut rows = TaskRows::empty();
+    timed!(
         clock,
         times,
-        TaskRows::new,
+        TaskRows::stack,
+        &mut rows,
         controller.tasks(),
         &reference.tasks,
         &kinematics,
