@@ -115,7 +115,7 @@ fn measure(tools: &Tools) -> Result<Figures, Trouble> {
         ("qemu".into(), qemu_version()?),
         (
             "profile".into(),
-            "firmware (release, fat LTO, one codegen unit), target-cpu=cortex-m7; host: release, target-cpu=x86-64-v3".into(),
+            "release; target-cpu=cortex-m7, host: x86-64-v3".into(),
         ),
     ]);
     Ok(figures)

@@ -9,9 +9,6 @@ use std::process::{Command, Output, Stdio};
 /// Of the Cortex-M7.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Cargo's profile of the images.
-pub const PROFILE: &str = "firmware";
-
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
@@ -125,11 +122,11 @@ impl Tools {
         Ok(Self { root, build, work })
     }
 
-    /// Builds an image for the target as it is shipped, [`PROFILE`].
+    /// Builds an image for the target as it is shipped.
     pub fn image(&self, name: &str, features: &[&str]) -> Result<PathBuf, Trouble> {
         let output = self.try_image(name, features)?;
         if output.status.success() {
-            Ok(self.build.join(TARGET).join(PROFILE).join(name))
+            Ok(self.build.join(TARGET).join("release").join(name))
         } else {
             Err(failed(&format!("build of the image {name}"), &output))
         }
@@ -138,7 +135,7 @@ impl Tools {
     /// The same, whatever comes of it.
     pub fn try_image(&self, name: &str, features: &[&str]) -> Result<Output, Trouble> {
         let mut cargo = self.cargo("build");
-        cargo.args(["-p", "firmware", "--profile", PROFILE, "--target", TARGET]);
+        cargo.args(["-p", "firmware", "--release", "--target", TARGET]);
         cargo.args(["--bin", name, "--features", &features.join(",")]);
         Ok(cargo.output()?)
     }
