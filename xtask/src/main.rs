@@ -6,9 +6,11 @@
 
 mod arm;
 mod bench;
+mod board;
 mod figures;
 mod flops;
 mod fri;
+mod fri_check;
 mod host;
 mod limits;
 mod panic_free;
@@ -19,6 +21,7 @@ mod tools;
 
 use std::process::ExitCode;
 
+use board::Link;
 use tools::Need;
 
 const USAGE: &str = "usage: cargo xtask COMMAND
@@ -31,6 +34,9 @@ bench-m7 [--write]     instructions, stack and flash against docs/timing.json an
 arm-m7                 the application image; its log needs defmt-print
 fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a serial
                        port: run hil-sim serve beside it
+fri-m7 --check         the same by itself: trace as without a board, safe outputs after an
+                       emergency stop and without a robot; with --serial the first
+                       second over the serial port
 missing-m7             prints what has to be installed for the first three, exit code 2 if anything";
 
 /// What came out: a verdict, or why there is none.
@@ -46,8 +52,10 @@ fn main() -> ExitCode {
         ["bench-m7"] => bench::run(false),
         ["bench-m7", "--write"] => bench::run(true),
         ["arm-m7"] => arm::run(),
-        ["fri-m7"] => fri::run(fri::Link::Ethernet),
-        ["fri-m7", "--serial"] => fri::run(fri::Link::Serial),
+        ["fri-m7"] => fri::run(Link::Ethernet),
+        ["fri-m7", "--serial"] => fri::run(Link::Serial),
+        ["fri-m7", "--check"] => fri_check::run(Link::Ethernet),
+        ["fri-m7", "--check", "--serial"] => fri_check::run(Link::Serial),
         ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         _ => {
             eprintln!("{USAGE}");

@@ -140,6 +140,19 @@ impl Tools {
         Ok(cargo.output()?)
     }
 
+    /// Builds a program of the workspace for the host: the package of that name.
+    pub fn program(&self, name: &str) -> Result<PathBuf, Trouble> {
+        let output = self
+            .cargo("build")
+            .args(["-p", name, "--release"])
+            .output()?;
+        if output.status.success() {
+            Ok(self.build.join("release").join(name))
+        } else {
+            Err(failed(&format!("build of {name}"), &output))
+        }
+    }
+
     /// Runs the host program of that name in the working directory.
     pub fn host(&self, name: &str, arguments: &[&str]) -> Result<String, Trouble> {
         let mut cargo = self.cargo("build");
