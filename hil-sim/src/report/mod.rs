@@ -29,7 +29,7 @@ pub use scene::snapshots;
 use crate::contact::{Hand, Interval, Push};
 use crate::names::NullStiffness;
 use crate::scenario::Scenario;
-use crate::summary::{Summary, Verdict};
+use crate::summary::{CLIENT, Summary, Verdict};
 
 /// A finished run, as the figures and the report need it.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,12 @@ impl<'a> Run<'a> {
         } else {
             &[]
         }
+    }
+
+    /// Whether a client on the robot link controlled the arm: its gains are unknown.
+    #[must_use]
+    pub fn by_client(&self) -> bool {
+        self.summary.controller == CLIENT
     }
 
     /// Whether the run came as far as `t_s`; only a stopped one may not have.

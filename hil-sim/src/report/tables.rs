@@ -323,10 +323,12 @@ pub fn link(link: &LinkFigures) -> String {
 /// Gains, references, cycle: what the run was set to.
 pub fn settings(run: &Run<'_>) -> String {
     let (scenario, summary) = (run.scenario, run.summary);
-    let mut table = Table::new(
-        "Gains as they acted, with the chosen null-space stiffness.",
-        &columns(&["Setting", "Value"]),
-    );
+    let caption = if run.by_client() {
+        "Arm and motion that the client is held against; its gains are its own."
+    } else {
+        "Gains as they acted, with the chosen null-space stiffness."
+    };
+    let mut table = Table::new(caption, &columns(&["Setting", "Value"]));
     let mut row = |name: &str, value: String| table.row(&escape(name), &[escape(&value)]);
     row("Arm", scenario.robot.clone());
     row(
@@ -343,16 +345,27 @@ pub fn settings(run: &Run<'_>) -> String {
             summary.cycles
         ),
     );
-    row("Start posture, also q_d [deg]", list(&scenario.start_deg));
+    let start = if run.by_client() {
+        "Start posture [deg]"
+    } else {
+        "Start posture, also q_d [deg]"
+    };
+    row(start, list(&scenario.start_deg));
     for (number, level) in (1..).zip(&scenario.levels) {
         row(
             &format!("Level {number}: task"),
             format!("{}: {}", level.label(), reference(level)),
         );
+        if run.by_client() {
+            continue;
+        }
         row(
             &format!("Level {number}: K_p [1/s\u{b2}], K_d [1/s]"),
             format!("{}; {}", gain(&level.stiffness), gain(&level.damping)),
         );
+    }
+    if run.by_client() {
+        return table.finish();
     }
     let null = &scenario.null_space;
     let factor = run.null_stiffness.factor();
