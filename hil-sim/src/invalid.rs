@@ -126,7 +126,8 @@ pub fn in_range(thing: impl fmt::Display, value: f64, min: f64, max: f64) -> Res
     if value >= min && value <= max {
         Ok(value)
     } else {
-        Err(Invalid::new(thing, value, format_args!("{min} to {max}")))
+        let allowed = format_args!("{min} to {max}");
+        Err(Invalid::new(thing, short(value), allowed))
     }
 }
 
@@ -140,9 +141,19 @@ pub fn positive(thing: impl fmt::Display, value: f64, max: f64) -> Result<f64, I
     } else {
         Err(Invalid::new(
             thing,
-            value,
+            short(value),
             format_args!("above 0, at most {max}"),
         ))
+    }
+}
+
+/// A number as a person would write it: without hundreds of zeros.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && size.is_finite() && !(1e-6..1e15).contains(&size) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
     }
 }
 
@@ -179,6 +190,10 @@ mod tests {
                 .unwrap_err()
                 .to_string(),
             "--duration: -1; allowed: above 0, at most 3600"
+        );
+        assert_eq!(
+            in_range("x", 1e300, 0.0, 1.0).unwrap_err().to_string(),
+            "x: 1e300; allowed: 0 to 1"
         );
     }
 }

@@ -24,4 +24,5 @@ pub mod robot;
 pub mod scenario;
 pub mod serve;
 pub mod summary;
+pub mod terminal;
 pub mod trace;

@@ -109,6 +109,10 @@ impl Input {
     /// # Errors
     /// The first field that cannot be used, by its path.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
+        if text.trim().is_empty() {
+            let allowed = "a JSON object, as in docs/explain.md";
+            return Err(Invalid::new("state", "empty", allowed));
+        }
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let input: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let path = error.path().to_string();
