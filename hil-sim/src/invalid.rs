@@ -110,10 +110,13 @@ impl std::error::Error for Invalid {}
 
 /// The known name that `given` was most likely meant to be.
 fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    let given = given.to_lowercase();
+    // Of short names the similarity is low even with one slip.
+    let slip = |name: &str| strsim::osa_distance(&given, name) == 1;
     known
         .iter()
-        .map(|name| (strsim::jaro_winkler(&given.to_lowercase(), name), *name))
-        .filter(|(similarity, _)| *similarity > 0.7)
+        .map(|name| (strsim::jaro_winkler(&given, name), *name))
+        .filter(|(similarity, name)| *similarity > 0.7 || slip(name))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
 }
@@ -168,6 +171,11 @@ mod tests {
             Invalid::name("controller", "hierarchial", &known).to_string(),
             "controller: unknown 'hierarchial', did you mean 'hierarchical'? \
              allowed: hierarchical, no-observer, acceleration-level"
+        );
+        assert!(
+            Invalid::name("command", "rnu", &["run", "serve"])
+                .to_string()
+                .contains("did you mean 'run'?")
         );
         assert!(
             !Invalid::name("controller", "zzz\nqq", &known)

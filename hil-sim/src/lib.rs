@@ -20,6 +20,7 @@ pub mod output;
 pub mod paper;
 pub mod plant;
 pub mod report;
+mod reworded;
 pub mod robot;
 pub mod scenario;
 pub mod serve;

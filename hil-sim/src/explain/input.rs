@@ -9,6 +9,7 @@ use serde::Deserialize;
 use crate::controllers::ControllerKind;
 use crate::invalid::{Invalid, in_range};
 use crate::names::Named;
+use crate::reworded::reworded;
 use crate::scenario::{PointSpec, TaskSpec, joints};
 
 /// One control cycle. SI units, base-plate frame.
@@ -312,5 +313,11 @@ fn explained(text: &str, error: &serde_json::Error) -> Invalid {
             "finite JSON numbers and text in quotes",
         );
     }
-    Invalid::line(error)
+    let text = error.to_string();
+    let (message, place) = text.rsplit_once(" at line ").unwrap_or((&text, ""));
+    let reworded = reworded(message);
+    if reworded.to_string() == message {
+        return Invalid::line(error);
+    }
+    reworded.within(format_args!("line {place}"))
 }
