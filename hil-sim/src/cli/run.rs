@@ -14,6 +14,7 @@ use crate::experiment::Experiment;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{MeasurementKind, Named, NullStiffness, Switch};
 use crate::plant::{PlantKind, PlantOptions};
+use crate::report::Choices;
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
 use crate::terminal::{print, show, tell};
@@ -221,7 +222,7 @@ fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result
     progress.clear();
     let summary = written.map_err(|error| files.failed(error))?;
     warn_of_damping(experiment, &controller);
-    files.finish(scenario, &summary, experiment.null_stiffness, command)?;
+    files.finish(scenario, &summary, Choices::of(experiment), command)?;
     Ok(summary)
 }
 

@@ -11,8 +11,9 @@ use super::values::{dead_cycles, number, peer, seed};
 use crate::experiment::Instant;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::link::{Fault, Window};
-use crate::names::{Named, NullStiffness};
+use crate::names::{MeasurementKind, Named};
 use crate::plant::{PlantKind, PlantOptions};
+use crate::report::Choices;
 use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
 };
@@ -213,8 +214,13 @@ impl ServeOptions {
         }
         let summary = robot.summary();
         let command = own_command();
-        files.finish(&scenario, &summary, NullStiffness::Normal, Some(&command))?;
         let setup = robot.setup();
+        let choices = Choices {
+            measurement: MeasurementKind::Fri,
+            options: setup.plant_options,
+            ..Choices::default()
+        };
+        files.finish(&scenario, &summary, choices, Some(&command))?;
         let mut text = heading(&scenario, setup.plant, setup.contacts, setup.seed);
         text += &table(&[&summary]);
         if let Some(link) = &summary.link {

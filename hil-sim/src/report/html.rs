@@ -204,7 +204,7 @@ fn command(run: &Run<'_>) -> String {
         summary.controller,
         summary.seed
     );
-    let stiffness = crate::names::Named::name(run.null_stiffness);
+    let stiffness = crate::names::Named::name(run.choices.null_stiffness);
     if stiffness != "normal" {
         let _ = write!(line, " --null-stiffness {stiffness}");
     }
@@ -313,11 +313,24 @@ mod tests {
         assert!(html.contains(">FAIL<") && html.contains("a = 3 &lt; 4"));
     }
 
+    /// The damping that acts is the one that the settings show.
+    #[test]
+    fn settings_show_what_acted() {
+        let (summary, scenario, recording) = run(1.0);
+        let mut run = Run::new(&summary, &scenario, &recording);
+        let own = "<td>4, 4, 3, 3, 0.4, 0.3, 0.03</td>";
+        assert!(run_report(&run).contains(own));
+        run.choices.options.dead_cycles = 1;
+        let html = run_report(&run);
+        assert!(!html.contains(own) && html.contains("c M with c = 10 /s"));
+        assert!(html.contains("<td>direct, 1</td>"));
+    }
+
     #[test]
     fn the_command_names_what_differs() {
         let (summary, scenario, recording) = run(1.0);
         let mut run = Run::new(&summary, &scenario, &recording);
-        run.null_stiffness = NullStiffness::High;
+        run.choices.null_stiffness = NullStiffness::High;
         assert_eq!(
             command(&run),
             "hil-sim run two-level --plant realistic --contacts on --controller hierarchical \
