@@ -45,6 +45,10 @@ enum Command {
     /// Run a scenario and judge it: report, summary, trace and figures in the output folder
     Run(Box<RunOptions>),
     /// Be the robot: FRI over UDP, for a client that runs elsewhere
+    #[command(
+        after_help = "Lines on standard input while it serves: push POINT FX FY FZ SECONDS \
+(N, base-plate axes), release, drives off, drives on, quit."
+    )]
     Serve(Box<ServeOptions>),
     /// All experiments of the paper: every claim with a number and a verdict
     Paper {
