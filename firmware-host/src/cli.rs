@@ -451,10 +451,13 @@ fn closing(summary: &Summary) -> String {
         summary.scenario, summary.answered, summary.reason
     );
     for (number, level) in (1..).zip(&summary.levels) {
+        let (Some(rms), Some(max)) = (level.rms, level.max) else {
+            continue;
+        };
         let _ = writeln!(
             text,
-            "level {number} {}: rms {:.3}, max {:.3} (mm, or mrad of an orientation; from measured positions)",
-            level.name, level.rms, level.max
+            "level {number} {}: rms {rms:.3}, max {max:.3} (mm, or mrad of an orientation; from measured positions)",
+            level.name
         );
     }
     let link = &summary.link;

@@ -235,10 +235,11 @@ impl Tracking {
     }
 
     fn figures(&self, name: &str) -> LevelSummary {
+        let moved = self.count > 0;
         LevelSummary {
             name: name.into(),
-            rms: (self.squares / self.count.max(1) as f64).sqrt() * 1e3,
-            max: self.max * 1e3,
+            rms: moved.then(|| (self.squares / self.count as f64).sqrt() * 1e3),
+            max: moved.then_some(self.max * 1e3),
         }
     }
 }
