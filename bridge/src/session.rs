@@ -399,9 +399,7 @@ impl Session {
             RobotAdds::GravityAndCoriolis => step.gravity + step.coriolis,
         };
         if self.config.dry {
-            let mut outgoing = Outgoing::mirror(incoming);
-            outgoing.step = Some(step);
-            return outgoing;
+            return Outgoing::look_on(incoming, step);
         }
         let torque = (step.torque - self.robot_part) * self.ramp();
         let stiffness = self.stiffness_share();

@@ -19,8 +19,8 @@ const PERIODS_S: core::ops::RangeInclusive<f64> = 0.5e-3..=20e-3;
 /// Strategy that the robot's program is asked for: joint impedance.
 const JOINT_IMPEDANCE_STRATEGY: i32 = 30;
 
-/// Stiffness with which the robot holds the arm at the end \[Nm/rad\], and its
-/// damping (1 is critical): what robot programs usually set.
+/// Stiffness with which the robot holds the arm at the end and in a dry session
+/// \[Nm/rad\], and its damping (1 is critical): what robot programs usually set.
 const HOLD_STIFFNESS: f64 = 1000.0;
 const HOLD_DAMPING: f32 = 0.7;
 
@@ -119,6 +119,18 @@ impl Outgoing {
             torque: [0.0; DOF],
             stiffness: 0.0,
             damping: 0.0,
+        }
+    }
+
+    /// Nothing is to move, `step` is what would have been. The robot keeps its own
+    /// stiffness: a robot program that enters command state unasked must not find
+    /// a limp arm.
+    pub fn look_on(incoming: &Incoming<'_>, step: Step<f64>) -> Self {
+        Self {
+            step: Some(step),
+            stiffness: HOLD_STIFFNESS as f32,
+            damping: HOLD_DAMPING,
+            ..Self::mirror(incoming)
         }
     }
 

@@ -1,6 +1,6 @@
 //! The damaged datagrams of the example `mutate`, as many as a test run can afford.
 
-#[path = "../examples/mutate/mutator.rs"]
+#[path = "../examples/mutate_session/mutator.rs"]
 mod mutator;
 
 #[test]

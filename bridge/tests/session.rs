@@ -354,6 +354,9 @@ fn dry_it_computes_and_moves_nothing() {
         let answer = robot.cycle().expect("an answer");
         assert_eq!(answer.joint_torque, [0.0; 7]);
         assert_eq!(answer.user.int[1], 0, "no wish to start");
+        // In command state all the same: the robot's own stiffness holds the arm.
+        assert_eq!(answer.joint_stiffness, [1000.0; 7]);
+        assert_eq!(answer.joint_damping, [0.7; 7]);
     }
     let cycle = robot.session.last().expect("a cycle");
     let step = cycle.step.expect("torques as they would be");

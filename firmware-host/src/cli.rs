@@ -16,10 +16,11 @@ use controller_core::controller::Controller;
 use controller_core::joint::JointVector;
 use controller_core::model::ArmModel;
 use hil_sim::cli::usage;
+use hil_sim::cli::values::{address, dead_cycles, number, peer, processor};
 use hil_sim::invalid::{Invalid, in_range, positive};
 use hil_sim::names::{Named, NullStiffness};
-use hil_sim::plant::DEAD_CYCLES_MAX;
 use hil_sim::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
+use hil_sim::terminal::{print, tell};
 
 use crate::doctor;
 use crate::realtime::Realtime;
@@ -54,7 +55,7 @@ enum Command {
         #[arg(long, default_value_t = 2.0, value_parser = number, allow_negative_numbers = true)]
         cycle_ms: f64,
         /// Processor for the control thread, from 0
-        #[arg(long)]
+        #[arg(long, value_parser = processor, allow_negative_numbers = true)]
         cpu: Option<usize>,
     },
 }
@@ -66,12 +67,12 @@ struct RunOptions {
     #[arg(long, default_value = "two-level")]
     scenario: String,
     /// Address and port to which the robot sends
-    #[arg(long, default_value = "127.0.0.1:49938")]
+    #[arg(long, default_value = "127.0.0.1:49938", value_parser = address, value_name = "ADDR:PORT")]
     listen: SocketAddr,
     /// Answer this address only [default: the first that sends a measurement]
-    #[arg(long)]
+    #[arg(long, value_parser = peer, value_name = "ADDR:PORT")]
     peer: Option<SocketAddr>,
-    /// Length of the motion in s, up to 3600 [default: the scenario's]
+    /// Length of the motion in s, above 0, at most 3600 [default: the scenario's]
     #[arg(long, value_parser = number, allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Cycles between the arrival of a torque and its effect, 0 to 8
@@ -83,45 +84,34 @@ struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    /// Refuse a start posture that is farther from the scenario's than this, in deg
+    /// Refuse a start posture that is farther from the scenario's than this, in deg, above 0,
+    /// at most 360
     #[arg(long, value_parser = number, allow_negative_numbers = true, value_name = "DEG")]
     require_start: Option<f64>,
     /// Take references from UDP datagrams at this address instead of the scenario
-    #[arg(long, value_name = "ADDR:PORT")]
+    #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
-    /// Hold when no reference has come for so many ms
+    /// Hold when no reference has come for so many ms, above 0, at most 10000
     #[arg(long, default_value_t = 100.0, value_parser = number, allow_negative_numbers = true)]
     reference_timeout_ms: f64,
     /// Never move the robot: check its model, show the torques as they would be
     #[arg(long)]
     dry: bool,
-    /// Seconds to wait for the robot
+    /// Seconds to wait for the robot, above 0
     #[arg(long, default_value_t = 60.0, value_parser = number, allow_negative_numbers = true)]
     wait: f64,
     /// Processor for the control thread, from 0
-    #[arg(long)]
+    #[arg(long, value_parser = processor, allow_negative_numbers = true)]
     cpu: Option<usize>,
     /// Write a summary as JSON
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
     /// Write every cycle as CSV
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Write the last cycles before a fault as CSV
-    #[arg(long, default_value = "out/flight-record.csv")]
+    #[arg(long, default_value = "out/flight-record.csv", value_name = "FILE")]
     flight_record: PathBuf,
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "a number".to_string())
-}
-
-fn dead_cycles(text: &str) -> Result<u8, String> {
-    let allowed = || format!("whole numbers 0 to {DEAD_CYCLES_MAX}");
-    let cycles: u8 = text.parse().map_err(|_| allowed())?;
-    Some(cycles)
-        .filter(|cycles| usize::from(*cycles) <= DEAD_CYCLES_MAX)
-        .ok_or_else(allowed)
 }
 
 /// Runs the program with the arguments of the process.
@@ -138,7 +128,7 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
+            tell(format_args!("error: {error}"));
             ExitCode::from(2)
         }
     }
@@ -148,7 +138,7 @@ fn examine(cycle_ms: f64, cpu: Option<usize>) -> Result<u8, Invalid> {
     let cycle_ms = in_range("--cycle-ms", cycle_ms, 0.1, 20.0)?;
     let findings = doctor::examine(cycle_ms / 1e3, cpu)
         .map_err(|error| Invalid::line(error).within("loopback"))?;
-    print!("{}", findings.report());
+    print(findings.report())?;
     Ok(0)
 }
 
@@ -181,30 +171,23 @@ impl RunOptions {
         let required = self.required_start(&scenario)?;
         let wait = Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?);
         let mut source = self.source(&scenario)?;
-        for path in self
-            .summary
-            .iter()
-            .chain(&self.record)
-            .chain([&self.flight_record])
-        {
-            prepare(path)?;
-        }
-        let mut recorder = match &self.record {
-            Some(path) => Some(Recorder::create(path).map_err(|error| unwritable(path, &error))?),
-            None => None,
-        };
         let socket = UdpSocket::bind(self.listen).map_err(|error| {
             let allowed = format!("an address of this PC and a free port ({error})");
             Invalid::new("--listen", self.listen, allowed)
         })?;
+        self.prepare_files()?;
+        let mut recorder = match &self.record {
+            Some(path) => Some(Recorder::create(path).map_err(|error| unwritable(path, &error))?),
+            None => None,
+        };
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         // A second handler is the only error, and there is no first.
         let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
 
         let realtime = Realtime::ask(self.cpu);
-        eprintln!("{}", realtime.line());
-        eprintln!("waiting for the robot at {}", self.listen);
+        tell(realtime.line());
+        tell(format_args!("waiting for the robot at {}", self.listen));
         let mut session = Session::new(config);
         let mut link = Link {
             socket,
@@ -249,7 +232,14 @@ impl RunOptions {
 
         if session.phase() == Phase::Waiting {
             let (at, wait) = (self.listen, self.wait);
-            eprintln!("error: no robot: no measurement came to {at} within {wait} s");
+            let until = if stop.load(Ordering::Relaxed) {
+                "before it was interrupted".to_string()
+            } else {
+                format!("within {wait} s")
+            };
+            tell(format_args!(
+                "error: no robot: no measurement came to {at} {until}"
+            ));
             return Ok(4);
         }
         if let Some(step) = session
@@ -259,20 +249,21 @@ impl RunOptions {
         {
             let torque: JointVector<f64> = step.torque - step.gravity;
             let torque: Vec<_> = torque.iter().map(|value| format!("{value:.2}")).collect();
-            println!(
-                "dry: the last torque would have been {} Nm",
+            print(format_args!(
+                "dry: the last torque would have been {} Nm\n",
                 torque.join(" ")
-            );
+            ))?;
         }
         let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
         let mut summary = counts.summary(&session, &self.scenario, &names, &realtime);
-        if let Some(recorder) = recorder.take() {
-            let path = self.record.as_deref().unwrap_or(Path::new("the record"));
-            summary.recorder_dropped = recorder
-                .finish()
-                .map_err(|error| unwritable(path, &error))?;
+        let mut recorded = Ok(0);
+        if let (Some(recorder), Some(path)) = (recorder.take(), &self.record) {
+            recorded = recorder.finish().map_err(|error| unwritable(path, &error));
         }
+        summary.recorder_dropped = *recorded.as_ref().unwrap_or(&0);
+        // A record that failed does not take the rest with it.
         self.report(&summary, &flight)?;
+        recorded?;
         Ok(summary.exit_code)
     }
 
@@ -285,13 +276,32 @@ impl RunOptions {
         if summary.exit_code == 3 {
             let path = &self.flight_record;
             std::fs::write(path, flight.csv()).map_err(|error| unwritable(path, &error))?;
-            eprintln!(
+            tell(format_args!(
                 "the last {} cycles are in {}",
                 flight.cycles.len(),
                 path.display()
-            );
+            ));
         }
-        print!("{}", closing(summary));
+        print(closing(summary))
+    }
+
+    /// Tries every file that will be written.
+    fn prepare_files(&self) -> Result<(), Invalid> {
+        let files = [
+            ("--summary", self.summary.as_deref()),
+            ("--record", self.record.as_deref()),
+            ("--flight-record", Some(self.flight_record.as_path())),
+        ];
+        let mut known: Vec<(&str, &Path)> = Vec::new();
+        for (option, path) in files {
+            let Some(path) = path else { continue };
+            if let Some((other, _)) = known.iter().find(|(_, other)| *other == path) {
+                let allowed = format!("another file than that of {other}");
+                return Err(Invalid::new(option, path.display(), allowed));
+            }
+            prepare(path)?;
+            known.push((option, path));
+        }
         Ok(())
     }
 
@@ -320,10 +330,10 @@ impl RunOptions {
     }
 
     fn source(&self, scenario: &Scenario) -> Result<Source, Invalid> {
+        let timeout = positive("--reference-timeout-ms", self.reference_timeout_ms, 1e4)?;
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        let timeout = positive("--reference-timeout-ms", self.reference_timeout_ms, 1e4)?;
         Stream::listen(address, Duration::from_secs_f64(timeout / 1e3))
             .map(Source::Stream)
             .map_err(|error| {
@@ -428,7 +438,7 @@ impl Teller {
             if self.phase == Phase::Waiting {
                 let _ = write!(line, "; robot's model: {audit}");
             }
-            eprintln!("{line}");
+            tell(line);
         }
         self.phase = cycle.phase;
     }
@@ -441,10 +451,13 @@ fn closing(summary: &Summary) -> String {
         summary.scenario, summary.answered, summary.reason
     );
     for (number, level) in (1..).zip(&summary.levels) {
+        let (Some(rms), Some(max)) = (level.rms, level.max) else {
+            continue;
+        };
         let _ = writeln!(
             text,
-            "level {number} {}: rms {:.3}, max {:.3} (mm, or mrad of an orientation; from measured positions)",
-            level.name, level.rms, level.max
+            "level {number} {}: rms {rms:.3}, max {max:.3} (mm, or mrad of an orientation; from measured positions)",
+            level.name
         );
     }
     let link = &summary.link;

@@ -22,17 +22,17 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Writes a header to `path` and waits for cycles.
+    /// Waits for cycles. The file at `path` is made with the first of them: a robot
+    /// that never comes leaves an older record as it is.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The system gives no thread.
     pub fn create(path: &Path) -> io::Result<Self> {
-        let mut file = BufWriter::new(File::create(path)?);
-        file.write_all(header().as_bytes())?;
+        let path = path.to_path_buf();
         let (queue, cycles) = sync_channel(QUEUE);
         let writer = std::thread::Builder::new()
             .name("recorder".into())
-            .spawn(move || write_all(file, &cycles))?;
+            .spawn(move || write_all(&path, &cycles))?;
         Ok(Self {
             queue: Some(queue),
             writer: Some(writer),
@@ -61,8 +61,13 @@ impl Recorder {
     }
 }
 
-fn write_all(mut file: BufWriter<File>, cycles: &Receiver<CycleReport>) -> io::Result<()> {
-    for cycle in cycles {
+fn write_all(path: &Path, cycles: &Receiver<CycleReport>) -> io::Result<()> {
+    let Ok(first) = cycles.recv() else {
+        return Ok(());
+    };
+    let mut file = BufWriter::new(File::create(path)?);
+    file.write_all(header().as_bytes())?;
+    for cycle in std::iter::once(first).chain(cycles) {
         file.write_all(row(&cycle).as_bytes())?;
     }
     file.flush()

@@ -90,15 +90,17 @@ pub fn converse(
         match link.socket.recv_from(&mut bytes) {
             Ok((length, from)) => {
                 let begin = Instant::now();
-                if link.peer.is_some_and(|peer| peer != from) {
-                    counts.link.strangers += 1;
-                    continue;
-                }
+                let stranger = link.peer.is_some_and(|peer| peer != from);
                 let datagram = bytes.get(..length).unwrap_or(&bytes);
-                let outcome = session.receive(datagram, source, &mut answer);
+                let outcome = if stranger {
+                    None
+                } else {
+                    Some(session.receive(datagram, source, &mut answer))
+                };
                 let computed = begin.elapsed();
                 match outcome {
-                    Outcome::Answered => {
+                    None => counts.link.strangers += 1,
+                    Some(Outcome::Answered) => {
                         link.socket.send_to(&answer, from)?;
                         let latency = begin.elapsed();
                         heard = begin;
@@ -113,29 +115,30 @@ pub fn converse(
                             each(session, cycle);
                         }
                     }
-                    Outcome::Stale => counts.link.stale += 1,
-                    Outcome::Rejected(error) => counts.reject(&error.to_string()),
-                    Outcome::Unusable(error) => {
+                    Some(Outcome::Stale) => counts.link.stale += 1,
+                    Some(Outcome::Rejected(error)) => counts.reject(&error.to_string()),
+                    Some(Outcome::Unusable(error)) => {
                         return Err(io::Error::other(format!("the robot's cycle: {error}")));
                     }
                 }
             }
-            Err(error) if is_timeout(&error) => {
-                let patience = match session.phase() {
-                    Phase::Waiting => link.wait,
-                    _ => link.silence,
-                };
-                let stopped = session.stop_reason().is_some();
-                if heard.elapsed() > patience || (stopped && heard.elapsed() > LOOK_UP * 10) {
-                    session.silent();
-                    return Ok(counts);
-                }
-            }
+            Err(error) if is_timeout(&error) => {}
             // The robot's port is closed: it may open again.
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
             Err(error) => return Err(error),
         }
         if session.phase() == Phase::Finished {
+            return Ok(counts);
+        }
+        // Looked at after every datagram: strangers that go on sending are no robot.
+        let patience = match session.phase() {
+            Phase::Waiting => link.wait,
+            _ => link.silence,
+        };
+        let silence = heard.elapsed();
+        let stopped = session.stop_reason().is_some();
+        if silence > patience || (stopped && silence > LOOK_UP * 10) {
+            session.silent();
             return Ok(counts);
         }
     }
@@ -232,10 +235,11 @@ impl Tracking {
     }
 
     fn figures(&self, name: &str) -> LevelSummary {
+        let moved = self.count > 0;
         LevelSummary {
             name: name.into(),
-            rms: (self.squares / self.count.max(1) as f64).sqrt() * 1e3,
-            max: self.max * 1e3,
+            rms: moved.then(|| (self.squares / self.count as f64).sqrt() * 1e3),
+            max: moved.then_some(self.max * 1e3),
         }
     }
 }

@@ -19,6 +19,7 @@ use std::time::{Duration, Instant};
 use bridge::guide::ReferenceSource;
 use controller_core::joint::Vector3;
 use controller_core::measurement::Reference;
+use hil_sim::terminal::tell;
 
 /// References that wait for the loop.
 const QUEUE: usize = 64;
@@ -180,7 +181,7 @@ fn receive(socket: &UdpSocket, queue: &SyncSender<Setpoint>, refused: &AtomicU64
                 refused.fetch_add(1, Ordering::Relaxed);
                 // Once: a stream that is wrong is wrong a thousand times a second.
                 if !said {
-                    eprintln!("note: reference from {from}: {error}");
+                    tell(format_args!("note: reference from {from}: {error}"));
                     said = true;
                 }
             }

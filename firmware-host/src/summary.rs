@@ -45,10 +45,10 @@ pub struct Summary {
 pub struct LevelSummary {
     /// Point and axes.
     pub name: String,
-    /// rms \[mm\], or \[mrad\] of an orientation.
-    pub rms: f64,
-    /// Largest.
-    pub max: f64,
+    /// rms \[mm\], or \[mrad\] of an orientation; none if there was no motion.
+    pub rms: Option<f64>,
+    /// Largest, likewise.
+    pub max: Option<f64>,
 }
 
 /// Counts of the link.

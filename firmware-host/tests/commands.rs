@@ -1,8 +1,12 @@
 //! The command line: one line for everything that cannot be used, and the exit
 //! codes.
 
+use std::net::UdpSocket;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 fn firmware_host(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_firmware-host"))
@@ -22,12 +26,24 @@ const BAD: &[(&[&str], &[&str])] = &[
         &["did you mean 'two-level'"],
     ),
     (&["run", "--scenario", "no.toml"], &["no.toml", "readable"]),
-    (&["run", "--listen", "here"], &["--listen", "here"]),
+    (
+        &["run", "--listen", "here"],
+        &["--listen", "here", "such as 127.0.0.1:49938"],
+    ),
+    (&["run", "--listen", ""], &["--listen", "ADDRESS:PORT"]),
     (
         &["run", "--listen", "192.0.2.1:49938"],
         &["--listen", "an address of this PC"],
     ),
-    (&["run", "--peer", "x"], &["--peer", "x"]),
+    (&["run", "--peer", "x"], &["--peer", "x", "ADDRESS:PORT"]),
+    (&["run", "--peer", "0.0.0.0:1"], &["--peer", "0.0.0.0:1"]),
+    (&["run", "--cpu", "x"], &["--cpu", "'x'", "whole numbers"]),
+    (&["run", "--cpu", "-1"], &["--cpu", "'-1'", "whole numbers"]),
+    (&["run", "--dry=1"], &["--dry", "'1'", "no value"]),
+    (
+        &["run", "--summary", "a", "--record", "a"],
+        &["--record: a", "another file than that of --summary"],
+    ),
     (
         &["run", "--duration", "0"],
         &["--duration", "above 0, at most 3600"],
@@ -60,6 +76,10 @@ const BAD: &[(&[&str], &[&str])] = &[
             "inf",
         ],
         &["--reference-timeout-ms", "inf"],
+    ),
+    (
+        &["run", "--reference-timeout-ms", "0"],
+        &["--reference-timeout-ms", "above 0"],
     ),
     (
         &["run", "--record", "/proc/none/r.csv"],
@@ -102,6 +122,87 @@ fn without_a_robot_the_exit_code_is_four() {
     let text = String::from_utf8(output.stderr).expect("text");
     assert_eq!(output.status.code(), Some(4), "{text}");
     assert!(text.contains("no robot"), "{text}");
+}
+
+/// A record of before stays as it is when there is nothing to record.
+#[test]
+fn a_port_in_use_is_named_and_no_file_is_touched() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = folder.path().join("record.csv");
+    std::fs::write(&record, "of yesterday").expect("a file");
+    let taken = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let address = taken.local_addr().expect("an address").to_string();
+    for (listen, code) in [(address.as_str(), 2), ("127.0.0.1:0", 4)] {
+        let arguments = [
+            "run",
+            "--listen",
+            listen,
+            "--wait",
+            "0.2",
+            "--record",
+            "record.csv",
+        ];
+        let output = firmware_host(folder.path(), &arguments);
+        let text = String::from_utf8(output.stderr).expect("text");
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        assert!(text.contains(listen), "{text}");
+        assert_eq!(
+            std::fs::read_to_string(&record).expect("the record"),
+            "of yesterday"
+        );
+    }
+}
+
+/// Strangers that go on sending are no robot, and do not keep the program alive.
+#[test]
+fn strangers_do_not_make_it_wait() {
+    let address = {
+        let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        free.local_addr().expect("an address").to_string()
+    };
+    let stop = Arc::<AtomicBool>::default();
+    let (flag, to) = (Arc::clone(&stop), address.clone());
+    let stranger = std::thread::spawn(move || {
+        let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        while !flag.load(Ordering::Relaxed) {
+            // Before and after the program there is nobody at that port.
+            let _ = socket.send_to(b"hello", &to);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_firmware-host"))
+        .current_dir(folder.path())
+        .args(["run", "--listen", &address, "--wait", "0.3"])
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let deadline = Instant::now() + Duration::from_secs(20);
+    let mut status = None;
+    while status.is_none() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+        status = child.try_wait().expect("a child");
+    }
+    stop.store(true, Ordering::Relaxed);
+    stranger.join().expect("the stranger");
+    let _ = child.kill();
+    child.wait().expect("the end");
+    assert_eq!(status.and_then(|status| status.code()), Some(4));
+}
+
+/// Nobody has to read what it says.
+#[test]
+fn a_closed_standard_error_does_not_end_it_early() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_firmware-host"))
+        .current_dir(folder.path())
+        .args(["run", "--listen", "127.0.0.1:0", "--wait", "0.2"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stderr.take());
+    let status = child.wait().expect("the program ends");
+    assert_eq!(status.code(), Some(4));
 }
 
 #[test]

@@ -4,8 +4,9 @@ mod files;
 mod run;
 mod serve;
 pub mod usage;
+pub mod values;
 
-use std::io::{self, IsTerminal, Read, Write};
+use std::io::{self, IsTerminal, Read};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,6 +15,7 @@ use clap::{Parser, Subcommand};
 use crate::explain::explain;
 use crate::invalid::Invalid;
 use crate::scenario::Scenario;
+use crate::terminal::{print, tell};
 
 pub use run::RunOptions;
 pub use serve::ServeOptions;
@@ -43,6 +45,10 @@ enum Command {
     /// Run a scenario and judge it: report, summary, trace and figures in the output folder
     Run(Box<RunOptions>),
     /// Be the robot: FRI over UDP, for a client that runs elsewhere
+    #[command(
+        after_help = "Lines on standard input while it serves: push POINT FX FY FZ SECONDS \
+(N, base-plate axes), release, drives off, drives on, quit."
+    )]
     Serve(Box<ServeOptions>),
     /// All experiments of the paper: every claim with a number and a verdict
     Paper {
@@ -52,12 +58,12 @@ enum Command {
     },
     /// Print a built-in scenario as commented TOML
     Scenario {
-        /// Its name
+        /// two-level, case-1, case-2, hand
         name: String,
     },
     /// Lay one control cycle open: JSON state in, every quantity of the law out
     Explain {
-        /// JSON file, or - for standard input
+        /// JSON file, or - for standard input; its fields: docs/explain.md
         #[arg(default_value = "-")]
         file: PathBuf,
     },
@@ -78,13 +84,15 @@ pub fn main() -> ExitCode {
         Some(Command::Run(options)) => options.run(),
         Some(Command::Serve(options)) => options.run(),
         Some(Command::Paper { out }) => crate::paper::run(&out),
-        Some(Command::Scenario { name }) => Scenario::built_in_text(&name).and_then(print),
-        Some(Command::Explain { file }) => explain_file(&file).and_then(|text| print(&text)),
+        Some(Command::Scenario { name }) => {
+            Scenario::built_in_text(&name).and_then(print).map(|()| 0)
+        }
+        Some(Command::Explain { file }) => explain_file(&file).and_then(print).map(|()| 0),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
+            tell(format_args!("error: {error}"));
             ExitCode::from(USAGE)
         }
     }
@@ -101,7 +109,7 @@ fn explain_file(file: &std::path::Path) -> Result<String, Invalid> {
     let mut text = String::new();
     if file.as_os_str() == "-" {
         if io::stdin().is_terminal() {
-            eprintln!("reading the state from standard input; see docs/explain.md for its fields");
+            tell("reading the state from standard input; see docs/explain.md for its fields");
         }
         io::stdin().read_to_string(&mut text).map_err(readable)?;
     } else {
@@ -116,14 +124,4 @@ fn explain_file(file: &std::path::Path) -> Result<String, Invalid> {
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;
     json.push('\n');
     Ok(json)
-}
-
-/// Prints to standard output; a reader that closes it early is no error.
-fn print(text: &str) -> Result<u8, Invalid> {
-    match io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Invalid::line(error).within("standard output"))
-        }
-        _ => Ok(0),
-    }
 }

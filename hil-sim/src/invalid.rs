@@ -110,10 +110,13 @@ impl std::error::Error for Invalid {}
 
 /// The known name that `given` was most likely meant to be.
 fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
+    let given = given.to_lowercase();
+    // Of short names the similarity is low even with one slip.
+    let slip = |name: &str| strsim::osa_distance(&given, name) == 1;
     known
         .iter()
-        .map(|name| (strsim::jaro_winkler(&given.to_lowercase(), name), *name))
-        .filter(|(similarity, _)| *similarity > 0.7)
+        .map(|name| (strsim::jaro_winkler(&given, name), *name))
+        .filter(|(similarity, name)| *similarity > 0.7 || slip(name))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
 }
@@ -126,7 +129,8 @@ pub fn in_range(thing: impl fmt::Display, value: f64, min: f64, max: f64) -> Res
     if value >= min && value <= max {
         Ok(value)
     } else {
-        Err(Invalid::new(thing, value, format_args!("{min} to {max}")))
+        let allowed = format_args!("{min} to {max}");
+        Err(Invalid::new(thing, short(value), allowed))
     }
 }
 
@@ -140,9 +144,19 @@ pub fn positive(thing: impl fmt::Display, value: f64, max: f64) -> Result<f64, I
     } else {
         Err(Invalid::new(
             thing,
-            value,
+            short(value),
             format_args!("above 0, at most {max}"),
         ))
+    }
+}
+
+/// A number as a person would write it: without hundreds of zeros.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && size.is_finite() && !(1e-6..1e15).contains(&size) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
     }
 }
 
@@ -157,6 +171,11 @@ mod tests {
             Invalid::name("controller", "hierarchial", &known).to_string(),
             "controller: unknown 'hierarchial', did you mean 'hierarchical'? \
              allowed: hierarchical, no-observer, acceleration-level"
+        );
+        assert!(
+            Invalid::name("command", "rnu", &["run", "serve"])
+                .to_string()
+                .contains("did you mean 'run'?")
         );
         assert!(
             !Invalid::name("controller", "zzz\nqq", &known)
@@ -179,6 +198,10 @@ mod tests {
                 .unwrap_err()
                 .to_string(),
             "--duration: -1; allowed: above 0, at most 3600"
+        );
+        assert_eq!(
+            in_range("x", 1e300, 0.0, 1.0).unwrap_err().to_string(),
+            "x: 1e300; allowed: 0 to 1"
         );
     }
 }

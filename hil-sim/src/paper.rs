@@ -17,6 +17,7 @@ use std::path::Path;
 
 use crate::invalid::Invalid;
 use crate::output;
+use crate::terminal::{print, show};
 use claims::{Claim, Verdict};
 use results::Results;
 
@@ -31,15 +32,15 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
     let figures_folder = out.join("figures");
     output::prepare(&figures_folder)?;
 
-    let show = io::stderr().is_terminal();
+    let terminal = io::stderr().is_terminal();
     let results = Results::of(plan::all()?, |done, all| {
-        if show {
-            eprint!("\r{done} of {all} runs");
+        if terminal {
+            show(format_args!("\r{done} of {all} runs"));
         }
     })?;
     let evidence = stability::evidence()?;
-    if show {
-        eprint!("\r{:30}\r", "");
+    if terminal {
+        show(format_args!("\r{:30}\r", ""));
     }
     let claims = claims::all(&results, &evidence);
     let drawings = figures::all(&results, &evidence);
@@ -60,7 +61,7 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
         &page::report(&results, &claims, &drawings, &evidence),
     )?;
 
-    print!("{}", text(&claims, out));
+    print(text(&claims, out))?;
     Ok(u8::from(
         claims
             .iter()
@@ -75,9 +76,11 @@ fn json(value: &impl serde::Serialize) -> Result<String, Invalid> {
 /// One line per claim, and where the files are.
 fn text(claims: &[Claim], out: &Path) -> String {
     let mut text = String::new();
+    let width = claims.iter().map(|claim| claim.id.len()).max();
+    let width = width.unwrap_or(0);
     for claim in claims {
         text += &format!(
-            "{:<14} {:<26} {}\n",
+            "{:<14} {:<width$}  {}\n",
             claim.verdict.name(),
             claim.id,
             claim.figure()

@@ -57,6 +57,9 @@ pub struct Acceptance {
     pub pass: Option<bool>,
 }
 
+/// `controller` of a run that a client on the robot link controlled.
+pub const CLIENT: &str = "client";
+
 /// The summary of one run, field by field as in summary.json.
 #[derive(Clone, Debug, Serialize)]
 #[expect(
@@ -84,6 +87,20 @@ pub struct Summary {
     pub faults: FaultCounts,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<LinkFigures>,
+}
+
+impl Summary {
+    /// The verdict in a word for people: a run that no limit was held against is no
+    /// pass, though it exits like one.
+    #[must_use]
+    pub fn verdict_word(&self) -> &'static str {
+        let judged = self.acceptance.iter().any(|one| one.pass.is_some());
+        match self.verdict {
+            Verdict::Pass if self.acceptance.is_empty() => "no limit",
+            Verdict::Pass if !judged => "not judged",
+            other => other.name(),
+        }
+    }
 }
 
 /// What decides which limits apply to a run.

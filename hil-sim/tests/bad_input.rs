@@ -55,6 +55,9 @@ fn arguments() {
         "run two-level --null-stiffness soft",
         "run two-level --dead-cycles 9",
         "run two-level --stiction perhaps",
+        "run two-level --plant ideal --stiction on",
+        "run two-level --duration ",
+        "run two-level --duration 1e300",
         "run two-level --seed -1",
         "run two-level --seed 1.5",
         "run two-level --duration NaN",
@@ -93,6 +96,9 @@ fn arguments() {
         "serve --scheme torque",
         "serve --robot-adds everything",
         "serve --wait 0",
+        "serve --port -1",
+        "serve --lockstep=yes",
+        "serve --serial a-file",
         "serve --drives-off 5",
         "serve --fault drop=0.1",
         "serve --fault up:drop=0.1",
@@ -116,6 +122,35 @@ fn arguments() {
         writeln!(lines, "$ hil-sim {arguments}\n{}\n", refusal(&words, "")).expect("memory");
     }
     insta::assert_snapshot!(lines);
+}
+
+/// A socket that is taken: the option is named, and no folder is made.
+#[test]
+fn a_port_in_use() {
+    let taken = std::net::UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let port = taken.local_addr().expect("an address").port().to_string();
+    let line = refusal(&["serve", "--local-port", &port], "");
+    assert!(
+        line.starts_with(&format!(
+            "error: --local-port: {port}; allowed: a free port"
+        )),
+        "{line}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_argument_that_is_no_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let output = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args(["run".as_ref(), std::ffi::OsStr::from_bytes(b"two\xfflevel")])
+        .output()
+        .expect("the program runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8(output.stderr).expect("text"),
+        "error: argument: 'two\u{fffd}level'; allowed: text in UTF-8\n"
+    );
 }
 
 /// A level that is valid.
@@ -142,6 +177,7 @@ fn a_valid_state_is_explained() {
 fn states() {
     let many = [LEVEL; 3].join(", ");
     let mut lines = String::new();
+    writeln!(lines, "nothing\n{}\n", refusal(&["explain", "-"], " \n")).expect("memory");
     for (what, from, to) in [
         ("not JSON", "{\"robot\"", "robot"),
         ("cut off", "0.03]}}", "0.03]"),

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -74,6 +74,39 @@ fn a_run_too_short_for_its_contacts_is_not_judged_by_them() {
         summary["levels"][0]["plateau_mm"].as_array().map(Vec::len),
         Some(4)
     );
+}
+
+/// A run that no limit is set for passes, and does not say that it was judged.
+#[test]
+fn a_run_without_limits_says_so() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output = hil_sim(
+        folder.path(),
+        "run two-level --dead-cycles 3 --duration 0.1 --out o",
+    );
+    assert_eq!(output.status.code(), Some(0));
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(summary["verdict"], "pass");
+    assert_eq!(summary["acceptance"].as_array().map(Vec::len), Some(0));
+    let text = String::from_utf8(output.stdout).expect("text");
+    assert!(text.contains("no limit"), "{text}");
+    let report = fs::read_to_string(folder.path().join("o/report.html")).expect("a report");
+    assert!(report.contains("NO LIMIT") && !report.contains("PASS"));
+}
+
+/// Nobody has to read what it says.
+#[test]
+fn a_closed_standard_error_does_not_end_a_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args(["serve", "--wait", "0.2", "--remote", "127.0.0.1:9"])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    drop(child.stderr.take());
+    assert_eq!(child.wait().expect("the end").code(), Some(4));
 }
 
 #[test]

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::experiment::Instant;
 use crate::invalid::Invalid;
-use crate::names::NullStiffness;
 use crate::output::{self, Draft};
-use crate::report::{self, Recording};
+use crate::report::{self, Choices, Recording};
 use crate::scenario::Scenario;
 use crate::summary::Summary;
 use crate::trace::Trace;
@@ -57,12 +56,12 @@ impl Files {
         mut self,
         scenario: &Scenario,
         summary: &Summary,
-        null_stiffness: NullStiffness,
+        choices: Choices,
         command: Option<&str>,
     ) -> Result<(), Invalid> {
         self.recording.finish();
         let run = report::Run {
-            null_stiffness,
+            choices,
             command,
             ..report::Run::new(summary, scenario, &self.recording)
         };

@@ -8,13 +8,16 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::files::Files;
+use super::values::{dead_cycles, number, seed};
 use crate::controllers::ControllerKind;
 use crate::experiment::Experiment;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{MeasurementKind, Named, NullStiffness, Switch};
-use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantOptions};
+use crate::plant::{PlantKind, PlantOptions};
+use crate::report::Choices;
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
+use crate::terminal::{print, show, tell};
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -22,35 +25,35 @@ use crate::summary::Summary;
 pub struct RunOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     scenario: String,
-    /// ideal, realistic
+    /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
     plant: String,
-    /// on, off
+    /// The scenario's pushes and hands: on, off
     #[arg(long, default_value = "on")]
     contacts: String,
-    /// hierarchical, no-observer, literal, as-printed, acceleration-level, acceleration-level-estimate
+    /// The law: hierarchical, no-observer, literal, as-printed, acceleration-level, acceleration-level-estimate
     #[arg(long, default_value = "hierarchical")]
     controller: String,
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    /// direct, or fri: through the datagrams of the robot link, speeds estimated
+    /// How the controller sees the arm: direct, or fri: through the datagrams of the robot link, speeds estimated
     #[arg(long, default_value = "direct")]
     measurement: String,
     /// Cycles between the torque and its effect, 0 to 8; above 0 the null-space
     /// damping is the scenario's inertia-shaped one
     #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
-    dead_cycles: usize,
+    dead_cycles: u8,
     /// True stiction instead of smooth friction (realistic plant): on, off
     #[arg(long, default_value = "off")]
     stiction: String,
     /// Elastic joints (realistic plant): on, off
     #[arg(long, default_value = "off")]
     elasticity: String,
-    /// Seed of mismatch and noise
+    /// Seed of mismatch and noise (realistic plant), whole numbers from 0
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Length in s, up to 3600 [default: the scenario's]
+    /// Length in s, above 0, at most 3600 [default: the scenario's]
     #[arg(long, value_parser = number, allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Control cycle in ms, 0.1 to 20 [default: the scenario's]
@@ -59,23 +62,6 @@ pub struct RunOptions {
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
-}
-
-pub(super) fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| format!("whole numbers 0 to {}", u64::MAX))
-}
-
-pub(super) fn dead_cycles(text: &str) -> Result<usize, String> {
-    let allowed = || format!("whole numbers 0 to {DEAD_CYCLES_MAX}");
-    text.parse()
-        .ok()
-        .filter(|cycles| *cycles <= DEAD_CYCLES_MAX)
-        .ok_or_else(allowed)
-}
-
-pub(super) fn number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "a number".to_string())
 }
 
 impl RunOptions {
@@ -94,7 +80,7 @@ impl RunOptions {
         let mut text = experiment_heading(&experiment);
         text += &table(&[&summary]);
         text += &footer(&summary, &out);
-        super::print(&text)?;
+        print(&text)?;
         Ok(summary.verdict.exit_code())
     }
 
@@ -124,6 +110,7 @@ impl RunOptions {
                 option(name, &value.to_string(), "");
             }
         }
+        let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
         words.join(" ")
     }
 
@@ -136,6 +123,14 @@ impl RunOptions {
             let [min, max] = CYCLE_RANGE_MS;
             scenario.cycle_ms = in_range("--cycle-ms", cycle, min, max)?;
         }
+        let plant = PlantKind::from_name(&self.plant)?;
+        let option = |name: &str, value: &str| {
+            let on = switch(name, value)?;
+            if on && plant == PlantKind::Ideal {
+                return Err(Invalid::new(name, value, "off with --plant ideal"));
+            }
+            Ok(on)
+        };
         let controller = ControllerKind::from_name(&self.controller)?;
         let measurement = MeasurementKind::from_name(&self.measurement)?;
         if measurement == MeasurementKind::Fri && controller != ControllerKind::Hierarchical {
@@ -144,20 +139,29 @@ impl RunOptions {
         }
         Ok(Experiment {
             scenario,
-            plant: PlantKind::from_name(&self.plant)?,
+            plant,
             contacts: switch("--contacts", &self.contacts)?,
             controller,
             null_stiffness: NullStiffness::from_name(&self.null_stiffness)?,
             measurement,
             seed: self.seed,
             options: PlantOptions {
-                stiction: switch("--stiction", &self.stiction)?,
-                elasticity: switch("--elasticity", &self.elasticity)?,
-                dead_cycles: self.dead_cycles,
+                stiction: option("--stiction", &self.stiction)?,
+                elasticity: option("--elasticity", &self.elasticity)?,
+                dead_cycles: self.dead_cycles.into(),
                 substeps_factor: 0,
             },
         })
     }
+}
+
+/// A word as a shell takes it.
+pub(super) fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=@,+~".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_string();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 pub(super) fn switch(option: &str, value: &str) -> Result<bool, Invalid> {
@@ -199,7 +203,7 @@ pub fn comparison() -> Result<u8, Invalid> {
     text += &table(&rows.iter().collect::<Vec<_>>());
     text += &footer(&summary, &out);
     text += "Only hierarchical has to pass: the others are there for comparison.\n";
-    super::print(&text)?;
+    print(&text)?;
     Ok(summary.verdict.exit_code())
 }
 
@@ -218,7 +222,7 @@ fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result
     progress.clear();
     let summary = written.map_err(|error| files.failed(error))?;
     warn_of_damping(experiment, &controller);
-    files.finish(scenario, &summary, experiment.null_stiffness, command)?;
+    files.finish(scenario, &summary, Choices::of(experiment), command)?;
     Ok(summary)
 }
 
@@ -235,11 +239,11 @@ fn warn_of_damping(
     let mode = controller.fastest_mode();
     let value = mode.rate * experiment.scenario.cycle_s();
     if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {
-        eprintln!(
+        tell(format_args!(
             "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
              (joint {}, stretched postures)",
             mode.joint
-        );
+        ));
     }
 }
 
@@ -300,7 +304,7 @@ pub(super) fn table(runs: &[&Summary]) -> String {
                 figure(level.max()),
                 figure(level.worst_plateau()),
                 shown(first, &figure(run.residual.rms_error_nm)),
-                shown(first, run.verdict.name()),
+                shown(first, run.verdict_word()),
             );
         }
     }
@@ -337,13 +341,13 @@ impl Progress {
     fn show(&mut self, share: f64) {
         if self.start.elapsed() > Duration::from_secs(1) && io::stderr().is_terminal() {
             self.shown = true;
-            eprint!("\r{}: {:3.0} %", self.label, share * 100.0);
+            show(format_args!("\r{}: {:3.0} %", self.label, share * 100.0));
         }
     }
 
     fn clear(&self) {
         if self.shown {
-            eprint!("\r{:40}\r", "");
+            show(format_args!("\r{:40}\r", ""));
         }
     }
 }

@@ -1,22 +1,25 @@
 //! `hil-sim serve`: the robot's side on a socket.
 
-use std::net::{SocketAddr, ToSocketAddrs};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::files::Files;
-use super::run::{dead_cycles, footer, heading, number, seed, switch, table};
+use super::run::{footer, heading, quoted, switch, table};
+use super::values::{dead_cycles, number, peer, seed};
 use crate::experiment::Instant;
 use crate::invalid::{Invalid, in_range, positive};
-use crate::link::Fault;
-use crate::names::{Named, NullStiffness};
+use crate::link::{Fault, Window};
+use crate::names::{MeasurementKind, Named};
 use crate::plant::{PlantKind, PlantOptions};
+use crate::report::Choices;
 use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
 };
 use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
-use crate::serve::{Client, End, Operator, Serial, Service, Udp};
+use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
+use crate::terminal::{print, tell};
 
 /// Exit code when no client came, or none that could be let into command state.
 const NO_CLIENT: u8 = 4;
@@ -30,104 +33,105 @@ const FRI_CYCLE_MIN_MS: f64 = 1.0;
 /// Options of `serve`.
 #[derive(Clone, Debug, Args)]
 pub struct ServeOptions {
-    /// Built-in scenario or TOML file: start, contacts, what is judged
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: start, contacts, what is judged
     #[arg(long, default_value = "two-level")]
     scenario: String,
-    /// ideal, realistic
+    /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
     plant: String,
-    /// on, off
+    /// The scenario's pushes and hands: on, off
     #[arg(long, default_value = "on")]
     contacts: String,
-    /// Seed of mismatch, noise and faults
+    /// Seed of mismatch, noise and faults, whole numbers from 0
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Where the client is [default: 127.0.0.1:49938]
+    /// Where the client is, ADDRESS:PORT [default: 127.0.0.1:49938]
     #[arg(long)]
     remote: Option<String>,
     /// Short for --remote 127.0.0.1:PORT
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     port: Option<String>,
     /// A serial line instead: device or pseudo terminal
     #[arg(long, value_name = "PATH")]
     serial: Option<PathBuf>,
-    /// Own port; 0: any
-    #[arg(long, default_value = "0")]
+    /// Own port, 1 to 65535; 0: any
+    #[arg(long, default_value = "0", allow_negative_numbers = true)]
     local_port: String,
     /// Cycle in ms, 1 to 20 [default: the scenario's]
     #[arg(long, value_parser = number, allow_negative_numbers = true)]
     cycle_ms: Option<f64>,
-    /// Length in s, up to 3600 [default: the scenario's]
+    /// Length in s, above 0, at most 3600 [default: the scenario's]
     #[arg(long, value_parser = number, allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Cycles between the added torque and its effect, 0 to 8
     #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
-    dead_cycles: usize,
+    dead_cycles: u8,
     /// Virtual time: as fast as both sides can, the same bytes every time
     #[arg(long)]
     lockstep: bool,
     /// Who decides on command state: auto, handshake (the client, by user data)
     #[arg(long, default_value = "auto")]
     krl: String,
-    /// joint-impedance, position
+    /// What the robot makes of answers: joint-impedance, position
     #[arg(long, default_value = "joint-impedance")]
     scheme: String,
     /// What the robot adds to the torque itself: gravity, gravity-coriolis
     #[arg(long, default_value = "gravity")]
     robot_adds: String,
-    /// What goes wrong on the link, DIR:KIND=VALUE[@FROM-TO]; DIR to-client, to-robot,
-    /// both; KIND drop=P duplicate=P reorder=P delay=MS jitter=MS corrupt=P burst=PxN
-    /// freeze; FROM-TO in s of the scenario. May be given more than once
-    #[arg(long)]
+    /// What goes wrong on the link: DIR to-client, to-robot, both; KIND drop=P duplicate=P
+    /// reorder=P corrupt=P burst=PxN (P 0 to 1, N 1 to 10000 in a row) delay=MS jitter=MS
+    /// (0 to 10000) freeze; FROM-TO in s of the scenario. May be given more than once
+    #[arg(long, value_name = "DIR:KIND[@FROM-TO]")]
     fault: Vec<String>,
-    /// Scenario time during which the drives are off, FROM-TO in s
-    #[arg(long)]
+    /// Scenario time during which the drives are off, in s
+    #[arg(long, value_name = "FROM-TO")]
     drives_off: Option<String>,
-    /// Time to wait for the first answer, and then for command state, s
+    /// Time to wait for the first answer, and then for command state, in s, above 0
     #[arg(long, default_value = "60", value_parser = number, allow_negative_numbers = true)]
     wait: f64,
-    #[command(flatten)]
-    thresholds: Thresholds,
     /// Output folder [default: out/serve-SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
+    // Last: what follows would be listed under its heading.
+    #[command(flatten)]
+    thresholds: Thresholds,
 }
 
 /// When the robot is content.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Thresholds")]
 struct Thresholds {
-    /// Least share of answers in time for quality perfect
+    /// Least share of answers in time for quality perfect, 0 to 1
     #[arg(long, default_value = "0.99", value_parser = number, allow_negative_numbers = true)]
     perfect_rate: f64,
-    /// ... for quality ok
+    /// The same for quality ok, not above that of perfect
     #[arg(long, default_value = "0.95", value_parser = number, allow_negative_numbers = true)]
     ok_rate: f64,
-    /// ... for quality bad
+    /// The same for quality bad, not above that of ok; below it: unacceptable
     #[arg(long, default_value = "0.8", value_parser = number, allow_negative_numbers = true)]
     bad_rate: f64,
-    /// Largest jitter for quality perfect, in cycles
+    /// Largest jitter for quality perfect, in cycles, 0 to 1000
     #[arg(long, default_value = "0.25", value_parser = number, allow_negative_numbers = true)]
     perfect_jitter: f64,
-    /// Missing answers in a row that are borne
+    /// Missing answers in a row that are borne, whole numbers 0 to 1000000
     #[arg(long, default_value = "10", value_parser = number, allow_negative_numbers = true)]
     misses: f64,
-    /// Time with quality ok before command state, s
+    /// Time with quality ok before command state, in s, 0 to 60
     #[arg(long, default_value = "0.2", value_parser = number, allow_negative_numbers = true)]
     good_for: f64,
-    /// Largest distance of jntPos from the commanded position on entry, mrad
+    /// Largest distance of jntPos from the commanded position on entry, in mrad, 0 to 1000
     #[arg(long, default_value = "5", value_parser = number, allow_negative_numbers = true)]
     entry_mrad: f64,
-    /// Largest added torque on entry, Nm
+    /// Largest added torque on entry, in Nm, 0 to 200
     #[arg(long, default_value = "1", value_parser = number, allow_negative_numbers = true)]
     entry_nm: f64,
-    /// Speed limit of jntPos over the data sheet's
+    /// Speed limit of jntPos over the data sheet's, above 0, at most 10
     #[arg(long, default_value = "1.1", value_parser = number, allow_negative_numbers = true)]
     speed_factor: f64,
-    /// Stiffness of the robot program, Nm/rad
+    /// Stiffness of the robot program, in Nm/rad, above 0, at most 2000
     #[arg(long, default_value = "1000", value_parser = number, allow_negative_numbers = true)]
     krl_stiffness: f64,
-    /// Damping ratio of the robot program
+    /// Damping ratio of the robot program, 0 to 1
     #[arg(long, default_value = "0.7", value_parser = number, allow_negative_numbers = true)]
     krl_damping: f64,
 }
@@ -185,44 +189,45 @@ impl ServeOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
-        let failed = |error| Invalid::line(error).within(&service.client);
+        let mut client: Box<dyn Transport> = match &service.client {
+            Client::Udp { remote, local_port } => Box::new(Udp::open(*remote, *local_port)?),
+            Client::Serial(path) => Box::new(Serial::open(path)?),
+        };
         let mut files = Files::create(&out, &scenario, setup.contacts)?;
-        eprintln!(
+        tell(format_args!(
             "robot at the start posture, measurements go to {}; lines on standard input: push, \
              release, drives off|on, quit",
             service.client
-        );
+        ));
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
         let mut sink = |instant: &Instant<'_>| files.push(&scenario, instant);
-        let end = match &service.client {
-            Client::Udp { remote, local_port } => {
-                let mut client = Udp::open(*remote, *local_port).map_err(failed)?;
-                service.run(&mut robot, &mut operator, &mut client, &mut sink)
-            }
-            Client::Serial(path) => {
-                let mut client = Serial::open(path).map_err(failed)?;
-                service.run(&mut robot, &mut operator, &mut client, &mut sink)
-            }
-        };
-        match end.map_err(failed)? {
+        let end = service
+            .run(&mut robot, &mut operator, &mut client, &mut sink)
+            .map_err(|error| Invalid::line(error).within(&service.client))?;
+        match end {
             End::Finished => (),
             End::NoClient(why) => {
-                eprintln!("error: {why}");
+                tell(format_args!("error: {why}"));
                 return Ok(NO_CLIENT);
             }
         }
         let summary = robot.summary();
-        let command = self.command();
-        files.finish(&scenario, &summary, NullStiffness::Normal, Some(&command))?;
+        let command = own_command();
         let setup = robot.setup();
+        let choices = Choices {
+            measurement: MeasurementKind::Fri,
+            options: setup.plant_options,
+            ..Choices::default()
+        };
+        files.finish(&scenario, &summary, choices, Some(&command))?;
         let mut text = heading(&scenario, setup.plant, setup.contacts, setup.seed);
         text += &table(&[&summary]);
         if let Some(link) = &summary.link {
             text += &link_line(link);
         }
         text += &footer(&summary, &out);
-        super::print(&text)?;
+        print(&text)?;
         Ok(summary.verdict.exit_code())
     }
 
@@ -245,7 +250,9 @@ impl ServeOptions {
             ));
         }
         let remote = match (&self.remote, &self.port) {
-            (Some(remote), _) => address(remote)?,
+            (Some(remote), _) => {
+                peer(remote).map_err(|allowed| Invalid::new("--remote", remote, allowed))?
+            }
             (None, Some(text)) => SocketAddr::from(([127, 0, 0, 1], port("--port", text, 1)?)),
             (None, None) => SocketAddr::from(([127, 0, 0, 1], PORT)),
         };
@@ -282,7 +289,12 @@ impl ServeOptions {
         }
         let drives_off_s = match &self.drives_off {
             None => None,
-            Some(text) => Some(window(text)?),
+            Some(text) => {
+                let window = Window::read(text).ok_or_else(|| {
+                    Invalid::new("--drives-off", text, "FROM-TO in s, FROM below TO")
+                })?;
+                Some([window.from_s, window.to_s])
+            }
         };
         Ok(RobotSetup {
             scenario,
@@ -290,7 +302,7 @@ impl ServeOptions {
             contacts: switch("--contacts", &self.contacts)?,
             seed: self.seed,
             plant_options: PlantOptions {
-                dead_cycles: self.dead_cycles,
+                dead_cycles: self.dead_cycles.into(),
                 ..PlantOptions::default()
             },
             options: RobotOptions {
@@ -302,35 +314,17 @@ impl ServeOptions {
             },
         })
     }
-
-    /// The command line that repeats this run, with what is not at its default.
-    fn command(&self) -> String {
-        let own: Vec<_> = std::env::args().skip(1).collect();
-        format!("hil-sim {}", own.join(" "))
-    }
 }
 
-fn address(text: &str) -> Result<SocketAddr, Invalid> {
-    let wrong = || {
-        Invalid::new(
-            "--remote",
-            text,
-            "ADDRESS:PORT, such as 192.168.0.150:49938",
-        )
-    };
-    let mut all = text.to_socket_addrs().map_err(|_| wrong())?;
-    let found = all.find(|address| address.port() != 0 && !address.ip().is_unspecified());
-    found.ok_or_else(wrong)
-}
-
-fn window(text: &str) -> Result<[f64; 2], Invalid> {
-    let wrong = || Invalid::new("--drives-off", text, "FROM-TO in s, FROM below TO");
-    let (from, to) = text.split_once('-').ok_or_else(wrong)?;
-    let number = |text: &str| text.parse::<f64>().ok().filter(|t| *t >= 0.0 && *t < 1e6);
-    match (number(from), number(to)) {
-        (Some(from), Some(to)) if from < to => Ok([from, to]),
-        _ => Err(wrong()),
-    }
+/// The command line of this process.
+fn own_command() -> String {
+    let own = std::env::args_os().skip(1);
+    let words = own.map(|word| quoted(&word.to_string_lossy()));
+    ["hil-sim".to_string()]
+        .into_iter()
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The link in one line.

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use crate::invalid::Invalid;
+use crate::terminal::tell;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// Prints help and version as they are, an error of `program` in one line;
@@ -13,11 +14,16 @@ pub fn report(program: &str, commands: &[&str], error: &clap::Error) -> ExitCode
         let _ = error.print();
         return ExitCode::SUCCESS;
     }
-    eprintln!("error: {}", line(program, commands, error));
+    let arguments: Vec<_> = std::env::args_os()
+        .skip(1)
+        .map(|argument| argument.to_string_lossy().into_owned())
+        .collect();
+    let text = line(program, commands, &arguments, error);
+    tell(format_args!("error: {}", Invalid::line(text)));
     ExitCode::from(super::USAGE)
 }
 
-fn line(program: &str, commands: &[&str], error: &clap::Error) -> String {
+fn line(program: &str, commands: &[&str], arguments: &[String], error: &clap::Error) -> String {
     let context = |kind| {
         error.get(kind).map(|value| match value {
             ContextValue::Strings(all) => all.join(", "),
@@ -31,37 +37,49 @@ fn line(program: &str, commands: &[&str], error: &clap::Error) -> String {
     };
     let given = context(ContextKind::InvalidArg).unwrap_or_default();
     let value = context(ContextKind::InvalidValue).unwrap_or_default();
+    let command = arguments
+        .first()
+        .filter(|first| commands.contains(&first.as_str()));
+    let help = match command {
+        Some(command) => format!("see '{program} {command} --help'"),
+        None => format!("see '{program} --help'"),
+    };
     let nearest = context(ContextKind::SuggestedArg)
         .map_or(";".into(), |name| format!(", did you mean '{name}'?"));
     match error.kind() {
         ErrorKind::UnknownArgument => {
-            format!("unknown argument '{given}'{nearest} allowed: see '{program} --help'")
+            format!("unknown argument '{given}'{nearest} allowed: {help}")
         }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             let all = commands.join(", ");
-            format!("command: none given; allowed: {all}; see '{program} --help'")
+            format!("command: none given; allowed: {all}; {help}")
         }
         ErrorKind::InvalidSubcommand => {
             let given = context(ContextKind::InvalidSubcommand).unwrap_or_default();
             Invalid::name("command", &given, commands).to_string()
         }
-        ErrorKind::ValueValidation | ErrorKind::InvalidValue if !value.is_empty() => {
+        ErrorKind::InvalidValue if value.is_empty() => {
+            format!("{given}: a value is missing; allowed: {help}")
+        }
+        ErrorKind::ValueValidation | ErrorKind::InvalidValue => {
             match std::error::Error::source(error) {
                 Some(source) => format!("{given}: '{value}'; allowed: {source}"),
-                None => format!("{given}: '{value}'; see '{program} --help'"),
+                None => format!("{given}: '{value}'; {help}"),
             }
         }
-        ErrorKind::InvalidValue => {
-            format!("{given}: a value is missing; allowed: see '{program} --help'")
-        }
+        ErrorKind::TooManyValues => format!("{given}: '{value}'; allowed: no value"),
         ErrorKind::MissingRequiredArgument => {
-            format!("missing argument: {given}; allowed: see '{program} --help'")
+            format!("missing argument: {given}; allowed: {help}")
         }
         ErrorKind::ArgumentConflict => format!("{given}: given more than once; allowed: once"),
-        _ => error
-            .to_string()
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" "),
+        ErrorKind::InvalidUtf8 => {
+            let mut marked = arguments.iter().filter(|text| text.contains('\u{fffd}'));
+            let which = marked.next().map_or("", String::as_str);
+            format!("argument: '{which}'; allowed: text in UTF-8")
+        }
+        _ => {
+            let text = error.to_string();
+            text.strip_prefix("error: ").unwrap_or(&text).to_string()
+        }
     }
 }

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use crate::controllers::ControllerKind;
 use crate::invalid::{Invalid, in_range};
 use crate::names::Named;
+use crate::reworded::reworded;
 use crate::scenario::{PointSpec, TaskSpec, joints};
 
 /// One control cycle. SI units, base-plate frame.
@@ -109,6 +110,10 @@ impl Input {
     /// # Errors
     /// The first field that cannot be used, by its path.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
+        if text.trim().is_empty() {
+            let allowed = "a JSON object, as in docs/explain.md";
+            return Err(Invalid::new("state", "empty", allowed));
+        }
         let mut deserializer = serde_json::Deserializer::from_str(text);
         let input: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
             let path = error.path().to_string();
@@ -308,5 +313,11 @@ fn explained(text: &str, error: &serde_json::Error) -> Invalid {
             "finite JSON numbers and text in quotes",
         );
     }
-    Invalid::line(error)
+    let text = error.to_string();
+    let (message, place) = text.rsplit_once(" at line ").unwrap_or((&text, ""));
+    let reworded = reworded(message);
+    if reworded.to_string() == message {
+        return Invalid::line(error);
+    }
+    reworded.within(format_args!("line {place}"))
 }

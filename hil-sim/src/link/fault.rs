@@ -49,6 +49,17 @@ pub struct Window {
     pub to_s: f64,
 }
 
+impl Window {
+    /// Reads "FROM-TO"; none unless both are times from 0 on and FROM is below TO.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        let (from, to) = text.split_once('-')?;
+        let number = |text: &str| text.parse::<f64>().ok().filter(|t| *t >= 0.0 && *t < 1e6);
+        let (from_s, to_s) = (number(from)?, number(to)?);
+        (from_s < to_s).then_some(Self { from_s, to_s })
+    }
+}
+
 /// A fault of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
@@ -107,7 +118,7 @@ impl FromStr for Fault {
         };
         let (what, window) = match rest.split_once('@') {
             None => (rest, None),
-            Some((what, window)) => (what, Some(read_window(window).map_err(within)?)),
+            Some((what, window)) => (what, Some(window_of(window).map_err(within)?)),
         };
         let (kind, value) = match what.split_once('=') {
             None => (what, None),
@@ -165,20 +176,9 @@ fn read_kind(kind: &str, value: Option<&str>) -> Result<FaultKind, Invalid> {
     })
 }
 
-fn read_window(text: &str) -> Result<Window, Invalid> {
-    let bad = || {
-        Invalid::new(
-            "window",
-            text,
-            "FROM-TO in s of the scenario, FROM below TO",
-        )
-    };
-    let (from, to) = text.split_once('-').ok_or_else(bad)?;
-    let number = |text: &str| text.parse::<f64>().ok().filter(|t| *t >= 0.0 && *t < 1e6);
-    match (number(from), number(to)) {
-        (Some(from_s), Some(to_s)) if from_s < to_s => Ok(Window { from_s, to_s }),
-        _ => Err(bad()),
-    }
+fn window_of(text: &str) -> Result<Window, Invalid> {
+    let allowed = "FROM-TO in s of the scenario, FROM below TO";
+    Window::read(text).ok_or_else(|| Invalid::new("window", text, allowed))
 }
 
 #[cfg(test)]

@@ -305,7 +305,8 @@ fn lyapunov(evidence: &[Evidence]) -> Figure {
     Figure {
         file: "stability.svg",
         caption: "V_1 with a constant external torque and the observer at work, V_1 and V_2 \
-                  contact-free from 5 mm off, V_l from 0.1 rad off, at 2 ms."
+                  contact-free from 5 mm off, V_l from 0.1 rad off along the null space, at 2 ms. \
+                  What remains of V_l lies across it: the null space turns as the arm moves."
             .into(),
         drawing: chart.draw(),
     }

@@ -161,7 +161,8 @@ fn runs(results: &Results) -> String {
         "Verdict",
     ]);
     let mut table = Table::new(
-        "Per level, in mm. The files are in runs/NAME/summary.json.",
+        "Per level, in mm; the first row of a run is level 1. The files are in \
+         runs/NAME/summary.json.",
         &names,
     );
     for outcome in results.outcomes() {
@@ -170,7 +171,7 @@ fn runs(results: &Results) -> String {
             let name = if first {
                 format!("<code>{}</code>", outcome.id)
             } else {
-                String::new()
+                format!("&emsp;level {}", level + 1)
             };
             let residual = outcome.summary.residual.rms_error_nm.filter(|_| first);
             table.row(
@@ -185,7 +186,7 @@ fn runs(results: &Results) -> String {
                         String::new()
                     },
                     if first {
-                        outcome.summary.verdict.name().to_string()
+                        outcome.summary.verdict_word().to_string()
                     } else {
                         String::new()
                     },

@@ -13,7 +13,7 @@ const PAGE_CSS: &str = include_str!("page.css");
 /// The report as text of one HTML file, with style and drawings inside.
 #[must_use]
 pub fn run_report(run: &Run<'_>) -> String {
-    let title = format!("{} \u{2013} {}", run.label(), run.summary.verdict.name());
+    let title = format!("{} \u{2013} {}", run.label(), run.summary.verdict_word());
     let mut body = header(run);
     body += &banner(run.summary);
     section(&mut body, "Acceptance", &tables::acceptance(run));
@@ -108,32 +108,40 @@ fn banner(summary: &Summary) -> String {
         .reason
         .clone()
         .unwrap_or_else(|| match judged.len() {
-            0 => "No limit was judged.".to_string(),
+            0 if summary.acceptance.is_empty() => {
+                "The scenario sets no limit for such a run.".to_string()
+            }
+            0 => "No limit could be judged: there are no samples.".to_string(),
             1 => "The one limit is kept.".to_string(),
             all => format!("All {all} limits are kept."),
         });
-    let (word, icon, more) = match summary.verdict {
+    let (class, icon, more) = match summary.verdict {
+        Verdict::Pass if judged.is_empty() => (
+            "none",
+            r#"<circle cx="20" cy="20" r="17"/><path d="M12 20h16"/>"#,
+            String::new(),
+        ),
         Verdict::Pass => (
-            "PASS",
+            "pass",
             r#"<circle cx="20" cy="20" r="17"/><path d="M12 21l6 6 11-13"/>"#,
             String::new(),
         ),
         Verdict::Fail => (
-            "FAIL",
+            "fail",
             r#"<circle cx="20" cy="20" r="17"/><path d="M13.500 13.500l13 13m0-13l-13 13"/>"#,
             format!("{kept} of {} limits kept.", judged.len()),
         ),
         Verdict::Stopped => (
-            "STOPPED",
+            "stopped",
             r#"<path d="M13 3.500h14l9.500 9.500v14l-9.500 9.500h-14l-9.500-9.500v-14z"/><path d="M20 11v11m0 6v.5"/>"#,
-            format!("Safety stopped the run after {} cycles.", summary.cycles),
+            format!("The run ended after {} cycles.", summary.cycles),
         ),
     };
     let mut html = format!(
-        "<section class=\"verdict {}\" aria-label=\"Verdict\">\n\
+        "<section class=\"verdict {class}\" aria-label=\"Verdict\">\n\
          <svg class=\"icon\" viewBox=\"0 0 40 40\" aria-hidden=\"true\">{icon}</svg>\n\
-         <div><p class=\"word\">{word}</p>\n",
-        summary.verdict.name()
+         <div><p class=\"word\">{}</p>\n",
+        summary.verdict_word().to_uppercase()
     );
     // The reason of a failure is a list of limits, that of a stop one sentence.
     let reasons: Vec<_> = match summary.verdict {
@@ -170,9 +178,14 @@ fn drawings(run: &Run<'_>) -> String {
 
 fn footer(run: &Run<'_>) -> String {
     let command = run.command.map_or_else(|| command(run), str::to_string);
+    let same = if run.by_client() {
+        "With --lockstep the same client gives the same numbers again"
+    } else {
+        "The same command gives the same numbers on every machine"
+    };
     format!(
         "<footer>\n<p>This run again:</p>\n<pre><code>{}</code></pre>\n\
-         <p>Stratum {}. The same command gives the same numbers on every machine; all of them are \
+         <p>Stratum {}. {same}; all of them are \
          in <code>summary.json</code> and <code>trace.csv</code> beside this file.</p>\n</footer>\n",
         escape(&command),
         env!("CARGO_PKG_VERSION")
@@ -191,7 +204,7 @@ fn command(run: &Run<'_>) -> String {
         summary.controller,
         summary.seed
     );
-    let stiffness = crate::names::Named::name(run.null_stiffness);
+    let stiffness = crate::names::Named::name(run.choices.null_stiffness);
     if stiffness != "normal" {
         let _ = write!(line, " --null-stiffness {stiffness}");
     }
@@ -300,11 +313,24 @@ mod tests {
         assert!(html.contains(">FAIL<") && html.contains("a = 3 &lt; 4"));
     }
 
+    /// The damping that acts is the one that the settings show.
+    #[test]
+    fn settings_show_what_acted() {
+        let (summary, scenario, recording) = run(1.0);
+        let mut run = Run::new(&summary, &scenario, &recording);
+        let own = "<td>4, 4, 3, 3, 0.4, 0.3, 0.03</td>";
+        assert!(run_report(&run).contains(own));
+        run.choices.options.dead_cycles = 1;
+        let html = run_report(&run);
+        assert!(!html.contains(own) && html.contains("c M with c = 10 /s"));
+        assert!(html.contains("<td>direct, 1</td>"));
+    }
+
     #[test]
     fn the_command_names_what_differs() {
         let (summary, scenario, recording) = run(1.0);
         let mut run = Run::new(&summary, &scenario, &recording);
-        run.null_stiffness = NullStiffness::High;
+        run.choices.null_stiffness = NullStiffness::High;
         assert_eq!(
             command(&run),
             "hil-sim run two-level --plant realistic --contacts on --controller hierarchical \

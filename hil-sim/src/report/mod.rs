@@ -27,9 +27,11 @@ pub use recording::Recording;
 pub use scene::snapshots;
 
 use crate::contact::{Hand, Interval, Push};
-use crate::names::NullStiffness;
+use crate::experiment::Experiment;
+use crate::names::{MeasurementKind, NullStiffness};
+use crate::plant::PlantOptions;
 use crate::scenario::Scenario;
-use crate::summary::{Summary, Verdict};
+use crate::summary::{CLIENT, Summary, Verdict};
 
 /// A finished run, as the figures and the report need it.
 #[derive(Clone, Copy, Debug)]
@@ -40,21 +42,59 @@ pub struct Run<'a> {
     pub scenario: &'a Scenario,
     /// Its time series.
     pub recording: &'a Recording,
-    /// Factor on the scenario's null-space stiffness.
-    pub null_stiffness: NullStiffness,
+    /// What was chosen besides the scenario.
+    pub choices: Choices,
     /// The command that repeats it; none: put together from the summary.
     pub command: Option<&'a str>,
 }
 
+/// Choices of a run that change what acts, and that its summary does not name.
+#[derive(Clone, Copy, Debug)]
+pub struct Choices {
+    /// Factor on the scenario's null-space stiffness.
+    pub null_stiffness: NullStiffness,
+    /// How the controller saw the arm.
+    pub measurement: MeasurementKind,
+    /// What the plant did beyond the reference.
+    pub options: PlantOptions,
+}
+
+impl Default for Choices {
+    fn default() -> Self {
+        Self {
+            null_stiffness: NullStiffness::Normal,
+            measurement: MeasurementKind::Direct,
+            options: PlantOptions::default(),
+        }
+    }
+}
+
+impl Choices {
+    /// Those of an experiment.
+    #[must_use]
+    pub fn of(experiment: &Experiment) -> Self {
+        Self {
+            null_stiffness: experiment.null_stiffness,
+            measurement: experiment.measurement,
+            options: experiment.options,
+        }
+    }
+
+    /// Whether the null-space damping is c M and not the scenario's D.
+    fn has_inertia_damping(&self) -> bool {
+        self.measurement == MeasurementKind::Fri || self.options.dead_cycles > 0
+    }
+}
+
 impl<'a> Run<'a> {
-    /// A run with the scenario's own null-space stiffness.
+    /// A run with nothing chosen besides the scenario.
     #[must_use]
     pub fn new(summary: &'a Summary, scenario: &'a Scenario, recording: &'a Recording) -> Self {
         Self {
             summary,
             scenario,
             recording,
-            null_stiffness: NullStiffness::Normal,
+            choices: Choices::default(),
             command: None,
         }
     }
@@ -77,6 +117,12 @@ impl<'a> Run<'a> {
         } else {
             &[]
         }
+    }
+
+    /// Whether a client on the robot link controlled the arm: its gains are unknown.
+    #[must_use]
+    pub fn by_client(&self) -> bool {
+        self.summary.controller == CLIENT
     }
 
     /// Whether the run came as far as `t_s`; only a stopped one may not have.

@@ -6,6 +6,7 @@ use super::svg::escape;
 use super::ticks::{figure, plain};
 use super::{Run, letter};
 use crate::metrics::{LevelFigures, Metric};
+use crate::names::Named;
 use crate::robot::LinkFigures;
 use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
 
@@ -61,8 +62,8 @@ pub(crate) fn number(value: Option<f64>) -> String {
 pub fn acceptance(run: &Run<'_>) -> String {
     let all = &run.summary.acceptance;
     if all.is_empty() {
-        return "<p>The scenario sets no limits for this plant and these contacts: nothing was \
-                judged.</p>\n"
+        return "<p>The scenario sets no limits for this plant with these contacts, measurement \
+                and dead cycles: nothing was judged.</p>\n"
             .to_string();
     }
     let mut table = Table::new(
@@ -323,10 +324,12 @@ pub fn link(link: &LinkFigures) -> String {
 /// Gains, references, cycle: what the run was set to.
 pub fn settings(run: &Run<'_>) -> String {
     let (scenario, summary) = (run.scenario, run.summary);
-    let mut table = Table::new(
-        "Gains as they acted, with the chosen null-space stiffness.",
-        &columns(&["Setting", "Value"]),
-    );
+    let caption = if run.by_client() {
+        "Arm and motion that the client is held against; its gains are its own."
+    } else {
+        "Gains as they acted, with the chosen null-space stiffness."
+    };
+    let mut table = Table::new(caption, &columns(&["Setting", "Value"]));
     let mut row = |name: &str, value: String| table.row(&escape(name), &[escape(&value)]);
     row("Arm", scenario.robot.clone());
     row(
@@ -343,24 +346,56 @@ pub fn settings(run: &Run<'_>) -> String {
             summary.cycles
         ),
     );
-    row("Start posture, also q_d [deg]", list(&scenario.start_deg));
+    let options = &run.choices.options;
+    row(
+        "Measurement, dead cycles",
+        format!(
+            "{}, {}",
+            run.choices.measurement.name(),
+            options.dead_cycles
+        ),
+    );
+    let beyond = [
+        (options.stiction, "stiction"),
+        (options.elasticity, "elastic joints"),
+    ];
+    for (_, effect) in beyond.iter().filter(|(on, _)| *on) {
+        row("Plant option", effect.to_string());
+    }
+    let start = if run.by_client() {
+        "Start posture [deg]"
+    } else {
+        "Start posture, also q_d [deg]"
+    };
+    row(start, list(&scenario.start_deg));
     for (number, level) in (1..).zip(&scenario.levels) {
         row(
             &format!("Level {number}: task"),
             format!("{}: {}", level.label(), reference(level)),
         );
+        if run.by_client() {
+            continue;
+        }
         row(
             &format!("Level {number}: K_p [1/s\u{b2}], K_d [1/s]"),
             format!("{}; {}", gain(&level.stiffness), gain(&level.damping)),
         );
     }
+    if run.by_client() {
+        return table.finish();
+    }
     let null = &scenario.null_space;
-    let factor = run.null_stiffness.factor();
+    let factor = run.choices.null_stiffness.factor();
     row(
         "Null space: K_q [Nm/rad]",
         list(&null.stiffness.map(|k| factor * k)),
     );
-    row("Null space: D [Nms/rad]", list(&null.damping));
+    if run.choices.has_inertia_damping() {
+        let rate = plain(null.damping_rate);
+        row("Null space: D [Nms/rad]", format!("c M with c = {rate} /s"));
+    } else {
+        row("Null space: D [Nms/rad]", list(&null.damping));
+    }
     let posture = match null.posture {
         PostureSpec::Constant => "constant",
         PostureSpec::IntegralCoupled => "integral, coupled",

@@ -105,7 +105,7 @@ impl Robot {
         };
         Summary {
             scenario: scenario.name.clone(),
-            controller: "client",
+            controller: summary::CLIENT,
             plant: setup.plant.name(),
             contacts: setup.contacts,
             seed: setup.seed,

@@ -4,28 +4,55 @@ use serde::de::DeserializeOwned;
 use toml::de::{DeTable, DeValue};
 
 use crate::invalid::{Invalid, Segment};
+use crate::reworded::{is_about_a_key, reworded};
 
 /// Reads a TOML text.
 ///
 /// # Errors
 /// Line, key and what is wrong there.
 pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, Invalid> {
-    let located = |error: &toml::de::Error, path: String| {
+    let line = |error: &toml::de::Error| {
         let line = line_at(text, error.span().map_or(0, |span| span.start));
-        let key = if path.is_empty() || path == "." {
-            path
-        } else {
-            format!("{path}: ")
-        };
-        let key = key.trim_start_matches('.');
-        Invalid::line(format_args!("line {line}: {key}{}", error.message()))
+        format!("line {line}")
     };
-    let deserializer =
-        toml::Deserializer::parse(text).map_err(|error| located(&error, String::new()))?;
+    let deserializer = toml::Deserializer::parse(text).map_err(|error| {
+        // There is no key to name yet, so the line itself is shown.
+        let at = line_at(text, error.span().map_or(0, |span| span.start));
+        let shown: String = text
+            .lines()
+            .nth(at - 1)
+            .unwrap_or("")
+            .chars()
+            .take(60)
+            .collect();
+        let shown = format!("'{}'", shown.trim());
+        Invalid::line(error.message())
+            .within(shown)
+            .within(line(&error))
+    })?;
     serde_path_to_error::deserialize(deserializer).map_err(|error| {
-        let path = error.path().to_string();
-        located(error.inner(), path)
+        let message = error.inner().message();
+        let mut place = places(error.path());
+        if is_about_a_key(message) {
+            place.pop();
+        }
+        place.insert(0, line(error.inner()));
+        reworded(message).within(place.join(": "))
     })
+}
+
+/// The way to a value as errors write it: entries of lists are counted from 1.
+fn places(path: &serde_path_to_error::Path) -> Vec<String> {
+    use serde_path_to_error::Segment;
+    let mut places: Vec<String> = Vec::new();
+    for segment in path {
+        match (segment, places.last_mut()) {
+            (Segment::Seq { index }, Some(list)) => *list += &format!(" {}", index + 1),
+            (Segment::Map { key }, _) => places.push(key.clone()),
+            _ => (),
+        }
+    }
+    places
 }
 
 /// The line, counted from 1, of the value that `path` leads to; of the last

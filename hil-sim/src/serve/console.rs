@@ -9,6 +9,7 @@ use std::thread;
 use crate::invalid::{Invalid, positive};
 use crate::robot::Robot;
 use crate::scenario::PointSpec;
+use crate::terminal::tell;
 
 /// One line for a line that means nothing.
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \
@@ -115,7 +116,7 @@ impl Operator {
                 Ok(Some(Wish::Release)) => robot.release(),
                 Ok(Some(Wish::Drives(on))) => robot.switch_drives(on),
                 Ok(Some(Wish::Quit)) => robot.abort("quit"),
-                Err(error) => eprintln!("{error}"),
+                Err(error) => tell(error),
             }
         }
     }

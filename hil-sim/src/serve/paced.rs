@@ -1,5 +1,7 @@
 //! Serving by the wall clock: an absolute schedule, so that a late cycle does not
-//! move those after it.
+//! move those after it. Only where this program itself was kept from running for more
+//! than a cycle does the schedule move: the cycles that it slept through would
+//! otherwise count as answers that the client did not give.
 
 use std::io;
 use std::time::{Duration, Instant as Clock};
@@ -68,7 +70,7 @@ pub(super) fn run(
 struct Link {
     to_client: Channel,
     to_robot: Channel,
-    /// Wall clock at the start of cycle `first`.
+    /// Wall clock at the start of cycle `first`, as if the robot had never slept.
     zero: Clock,
     first: u64,
     cycle_s: f64,
@@ -86,6 +88,10 @@ impl Link {
     /// Sends the measurement and takes answers until the cycle is over.
     fn cycle(&mut self, robot: &mut Robot, client: &mut impl Transport) -> io::Result<()> {
         let start = (robot.cycle() - self.first) as f64 * self.cycle_s;
+        let asleep_s = self.now_s() - start;
+        if asleep_s > self.cycle_s {
+            self.zero += Duration::from_secs_f64(asleep_s);
+        }
         let end = start + self.cycle_s;
         let t_s = robot.time_s();
         let mut measurement = [0; MEASUREMENT_BYTES];

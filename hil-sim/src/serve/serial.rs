@@ -8,6 +8,7 @@ use bridge::framing::{self, DATAGRAM_MAX, Deframer, Fed};
 use serial2::SerialPort;
 
 use super::transport::{POLL, Transport};
+use crate::invalid::Invalid;
 
 /// Bits per second; a pseudo terminal does not care.
 pub const BAUD: u32 = 4_000_000;
@@ -29,8 +30,12 @@ impl Serial {
     ///
     /// # Errors
     /// It cannot be opened, or is no line.
-    pub fn open(path: &Path) -> io::Result<Self> {
-        Ok(Self::on(SerialPort::open(path, BAUD)?))
+    pub fn open(path: &Path) -> Result<Self, Invalid> {
+        let port = SerialPort::open(path, BAUD).map_err(|error| {
+            let allowed = format!("a serial device or pseudo terminal ({error})");
+            Invalid::new("--serial", path.display(), allowed)
+        })?;
+        Ok(Self::on(port))
     }
 
     /// A line that is open.

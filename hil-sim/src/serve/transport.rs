@@ -43,6 +43,20 @@ pub trait Transport {
     fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>>;
 }
 
+impl Transport for Box<dyn Transport> {
+    fn send(&mut self, datagram: &[u8]) -> io::Result<()> {
+        (**self).send(datagram)
+    }
+
+    fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+        (**self).receive(deadline)
+    }
+
+    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
+        (**self).receive_on_time(deadline)
+    }
+}
+
 impl<T: Transport> Peer for T {
     fn exchange(
         &mut self,
@@ -64,6 +78,10 @@ impl<T: Transport> Peer for T {
             answers.push(answer.to_vec());
             if expect != Expect::Nothing && answer.get(2..4) == counter {
                 return Ok(true);
+            }
+            // Datagrams without end are no answer either.
+            if Instant::now() >= deadline {
+                break;
             }
         }
         Ok(false)

@@ -5,6 +5,7 @@ use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::transport::{NOTHING, POLL, Transport};
+use crate::invalid::Invalid;
 
 /// More than any datagram of the protocol.
 const BUFFER: usize = 2048;
@@ -21,15 +22,21 @@ impl Udp {
     ///
     /// # Errors
     /// The port is taken, or the address cannot be reached.
-    pub fn open(remote: SocketAddr, local_port: u16) -> io::Result<Self> {
+    pub fn open(remote: SocketAddr, local_port: u16) -> Result<Self, Invalid> {
         let local: SocketAddr = match remote {
             SocketAddr::V4(to) if to.ip().is_loopback() => (Ipv4Addr::LOCALHOST, local_port).into(),
             SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, local_port).into(),
             SocketAddr::V6(to) if to.ip().is_loopback() => (Ipv6Addr::LOCALHOST, local_port).into(),
             SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, local_port).into(),
         };
-        let socket = UdpSocket::bind(local)?;
-        socket.connect(remote)?;
+        let socket = UdpSocket::bind(local).map_err(|error| {
+            let allowed = format!("a free port of this PC ({error})");
+            Invalid::new("--local-port", local_port, allowed)
+        })?;
+        socket.connect(remote).map_err(|error| {
+            let allowed = format!("an address that can be reached ({error})");
+            Invalid::new("--remote", remote, allowed)
+        })?;
         Ok(Self {
             socket,
             buffer: [0; BUFFER],

@@ -1,7 +1,7 @@
 //! Sends a session good and damaged measurements and checks every answer:
 //!
 //! ```sh
-//! cargo run --release -p bridge --example mutate -- [COUNT [SEED]]
+//! cargo run --release -p bridge --example mutate_session -- [COUNT [SEED]]
 //! ```
 //!
 //! COUNT is 1000000 and SEED is 1 unless given. Exit code 0: no panic, nothing
