@@ -73,6 +73,21 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
         }
     }
 
+    /// A cycle without a measurement: the drives go off, the observer starts anew with
+    /// the next one.
+    pub fn blind(&mut self) {
+        self.state.skip();
+        self.state.applied(&zeros());
+        // Not clean: an error whatever the emergency stop says, and the outputs safe.
+        let _ = self.guard.cycle(false);
+    }
+
+    /// The controller.
+    #[must_use]
+    pub fn controller(&self) -> &Controller<T> {
+        &self.controller
+    }
+
     /// The last cycles, oldest first.
     #[must_use]
     pub fn recorder(&self) -> &Recorder<T, RECORDED> {

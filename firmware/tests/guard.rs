@@ -143,9 +143,9 @@ fn an_output_that_fails_takes_the_other_one_down() {
 fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
     let job = Job::<f64>::new(JobKind::TwoLevel).expect("a valid job");
     let guard = Guard::new(
-        input(&[HIGH; 5]),
-        output(&[LOW, LOW, HIGH, LOW, LOW, HIGH, LOW]),
-        output(&[LOW, HIGH, LOW, LOW, LOW, HIGH, LOW]),
+        input(&[HIGH; 7]),
+        output(&[LOW, LOW, HIGH, LOW, LOW, HIGH, LOW, LOW, LOW]),
+        output(&[LOW, HIGH, LOW, LOW, LOW, HIGH, LOW, HIGH, LOW]),
     );
     let mut machine = Machine::new(job.controller.clone(), guard);
     let good = Measurement {
@@ -172,12 +172,17 @@ fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
     machine.enable();
     assert_eq!(machine.cycle(&good, &job.reference(4)).stopped, None);
 
+    // No measurement at all: off, and off it stays.
+    machine.blind();
+    let after = machine.cycle(&good, &job.reference(5));
+    assert_eq!(after.stopped, Some(Cause::NotEnabled));
+
     let numbers: Vec<_> = machine
         .recorder()
         .iter()
         .map(|cycle| cycle.number)
         .collect();
-    assert_eq!(numbers, [0, 1, 2, 3, 4]);
+    assert_eq!(numbers, [0, 1, 2, 3, 4, 5]);
     let (mut stop, mut drives, mut heartbeat) = machine.release();
     stop.done();
     drives.done();

@@ -14,6 +14,7 @@ mod fri_check;
 mod host;
 mod limits;
 mod panic_free;
+mod placement;
 mod selftest;
 mod stack;
 mod table;
@@ -37,6 +38,7 @@ fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a
 fri-m7 --check         the same by itself: trace as without a board, safe outputs after an
                        emergency stop and without a robot; with --serial the first
                        second over the serial port
+board-m7               the skeleton for the STM32H743: builds, code in ITCM, data in DTCM
 missing-m7             prints what has to be installed for the first three, exit code 2 if anything";
 
 /// What came out: a verdict, or why there is none.
@@ -56,6 +58,7 @@ fn main() -> ExitCode {
         ["fri-m7", "--serial"] => fri::run(Link::Serial),
         ["fri-m7", "--check"] => fri_check::run(Link::Ethernet),
         ["fri-m7", "--check", "--serial"] => fri_check::run(Link::Serial),
+        ["board-m7"] => placement::run(),
         ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         _ => {
             eprintln!("{USAGE}");

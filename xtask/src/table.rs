@@ -76,8 +76,8 @@ Limit: 65536 bytes.
 const ESTIMATE: &str = "
 ## Estimate for an STM32H743 at 480 MHz
 
-Not measured. Assumed: cycle and constants in ITCM, controller, state and stack in DTCM
-([memory.x](../memory.x)), no interrupt. Cycles per instruction are a guess between two
+Not measured. Assumed: the cycle's code in ITCM, controller, state and stack in DTCM, as in
+[firmware/boards/stm32h743](../firmware/boards/stm32h743), no interrupt above it. Cycles per instruction are a guess between two
 borders: single precision 0.9 (some dual issue) to 2.0 (every result waited for); double
 precision 1.3 to 3.0, because its additions and multiplications occupy the FPU for more
 than one cycle. Divisions and square roots take up to about 30 cycles in double precision;

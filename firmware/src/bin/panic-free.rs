@@ -17,8 +17,8 @@ use controller_core::task::{Axes, TaskReference};
 use firmware::job::{self, JobKind};
 use firmware::log::Number;
 
-/// Whether the levels of [`levels`] make a controller with `ROWS` rows whose cycle
-/// is clean, everything unknown to the compiler but the number of rows.
+/// Whether levels on flange, elbow and wrist make a controller with `ROWS` rows whose
+/// cycle is clean, everything unknown to the compiler but the number of rows.
 fn exercise<T: Number, const ROWS: usize>() -> bool {
     let Ok(model) = ArmModel::<T>::new(black_box(&LWR_IV)) else {
         return false;

@@ -1,0 +1,176 @@
+//! The skeleton for the STM32H743 builds, and its linker puts code and data where the
+//! cycle needs them.
+
+use std::ops::Range;
+use std::process::Command;
+
+use crate::Outcome;
+use crate::tools::{Need, TARGET, Tools, Trouble, failed, llvm_tool};
+
+const PACKAGE: &str = "firmware/boards/stm32h743";
+
+/// A memory by its name and addresses.
+type Memory = (&'static str, Range<u64>);
+
+const ITCM: Memory = ("ITCM", 0x40..0x1_0000);
+const DTCM: Memory = ("DTCM", 0x2000_0000..0x2002_0000);
+
+/// Modules of the core whose code a cycle runs.
+const CYCLE: [&str; 8] = [
+    "kinematics",
+    "dynamics",
+    "spatial",
+    "hierarchy",
+    "law",
+    "limits",
+    "observer",
+    "measurement",
+];
+
+/// What has to be in the image: parts of its name, and where it belongs.
+const REQUIRED: [(&[&str], &Memory); 4] = [
+    (&["stm32h743::cycle::Loop", "::run::"], &ITCM),
+    (
+        &["controller_core::controller::Controller", "::cycle::"],
+        &ITCM,
+    ),
+    (&["stm32h743", "::CONTROL"], &DTCM),
+    (&["_stack_start"], &DTCM),
+];
+
+/// Builds it and checks the addresses.
+pub fn run() -> Outcome {
+    let tools = Tools::find(&[Need::LlvmTools])?;
+    let build = tools.work.join("stm32h743");
+    let output = Command::new("cargo")
+        .args(["build", "--locked", "--release", "--target", TARGET])
+        .arg("--manifest-path")
+        .arg(tools.root.join(PACKAGE).join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&build)
+        // Where the configuration with the target's CPU is found.
+        .current_dir(&tools.root)
+        .output()?;
+    if !output.status.success() {
+        return Err(failed(&format!("build of {PACKAGE}"), &output));
+    }
+    let image = build.join(TARGET).join("release").join("stm32h743");
+    let output = Command::new(llvm_tool("llvm-nm")?)
+        .args(["--demangle", "--defined-only"])
+        .arg(&image)
+        .output()?;
+    if !output.status.success() {
+        return Err(failed("llvm-nm", &output));
+    }
+    let symbols = symbols(&String::from_utf8_lossy(&output.stdout));
+    let misplaced = misplaced(&symbols);
+    for line in &misplaced {
+        println!("{line}");
+    }
+    for (parts, (memory, _)) in REQUIRED {
+        if let Some((address, name)) = symbols.iter().find(|(_, name)| has(name, parts)) {
+            println!("{address:#010x} {memory}: {}", short(name));
+        }
+    }
+    let size = |from: &str, to: &str| -> Result<u64, Trouble> {
+        let address = |wanted: &str| symbols.iter().find(|(_, name)| name == wanted);
+        match (address(from), address(to)) {
+            (Some((from, _)), Some((to, _))) => Ok(to - from),
+            _ => Err(Trouble::Content(format!("no {from} or {to} in the image"))),
+        }
+    };
+    let code = size("__itcm_start", "__itcm_end")?;
+    let data = size("__sdata", "__ebss")?;
+    println!("code of the cycle: {code} bytes of 65472; data besides the stack: {data} of 131072");
+    Ok(misplaced.is_empty())
+}
+
+/// Addresses and names of functions and variables, thunks of the linker left out.
+fn symbols(text: &str) -> Vec<(u64, String)> {
+    let line = |line: &str| {
+        let (address, rest) = line.split_once(' ')?;
+        let (_, name) = rest.split_once(' ')?;
+        let address = u64::from_str_radix(address, 16).ok()?;
+        (!name.contains("Thunk")).then(|| (address, name.to_string()))
+    };
+    text.lines().filter_map(line).collect()
+}
+
+fn has(name: &str, parts: &[&str]) -> bool {
+    parts.iter().all(|part| name.contains(part))
+}
+
+/// The path without its hash.
+fn short(name: &str) -> &str {
+    name.split("::h").next().unwrap_or(name)
+}
+
+/// One line per symbol that is missing or lies elsewhere.
+fn misplaced(symbols: &[(u64, String)]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (parts, (memory, range)) in REQUIRED {
+        let mut found = symbols
+            .iter()
+            .filter(|(_, name)| has(name, parts))
+            .peekable();
+        if found.peek().is_none() {
+            lines.push(format!("{}: not in the image", parts.concat()));
+        }
+        // The stack begins behind the last address.
+        let range = range.start..=range.end;
+        lines.extend(
+            found
+                .filter(|(address, _)| !range.contains(address))
+                .map(|(address, name)| {
+                    outside(*address, name, memory, *range.start(), *range.end())
+                }),
+        );
+    }
+    for (address, name) in symbols {
+        let (memory, range) = &ITCM;
+        let cycle = CYCLE
+            .iter()
+            .any(|module| name.starts_with(&format!("controller_core::{module}::")));
+        if cycle && !range.contains(address) {
+            lines.push(outside(*address, name, memory, range.start, range.end));
+        }
+    }
+    lines
+}
+
+fn outside(address: u64, name: &str, memory: &str, start: u64, end: u64) -> String {
+    let name = short(name);
+    format!("{name}: at {address:#x}; allowed {start:#x} to {end:#x}, {memory}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "\
+00000050 t stm32h743::cycle::Loop$LT$J$GT$::run::h8b38
+00000580 t controller_core::controller::Controller$LT$T$GT$::cycle::h2800
+00007e28 t controller_core::kinematics::Kinematics$LT$T$GT$::new::h3ade
+0800f4c0 t controller_core::task::Task$LT$T$GT$::diagonal::h6c88
+080056c4 t __Thumbv7ABSLongThunk__ZN15controller_core3law
+20000008 d stm32h743::__cortex_m_rt_main_trampoline::CONTROL::hc773
+20020000 A _stack_start";
+
+    #[test]
+    fn what_lies_elsewhere_is_named_with_its_address() {
+        assert!(misplaced(&symbols(GOOD)).is_empty());
+        let slow = GOOD.replace("00007e28", "08007e28");
+        assert_eq!(
+            misplaced(&symbols(&slow)),
+            [
+                "controller_core::kinematics::Kinematics$LT$T$GT$::new: at 0x8007e28; allowed 0x40 to 0x10000, ITCM"
+            ]
+        );
+        let gone = GOOD.replace("::cycle::h2800", "::other::h2800");
+        assert_eq!(misplaced(&symbols(&gone)).len(), 1);
+        assert_eq!(
+            misplaced(&symbols(&GOOD.replace("20000008", "24000008"))).len(),
+            1
+        );
+    }
+}
