@@ -47,6 +47,7 @@ else
 fi
 
 programs="bare_loop replay errors"
+task="rtos_task.c rtos_host.c robot_host.c board.c board_host.c"
 flags="-std=c11 -Wall -Wextra -Wpedantic -Werror -O2 -I$crate/include"
 cd "$crate/examples/c"
 
@@ -95,6 +96,10 @@ if command -v gcc > /dev/null; then
     tail -n 1 "$out/errors.txt"
     "$out/replay-$precision" > "$out/host-$precision"
     same "host-$precision" "$precision"
+    # shellcheck disable=SC2086
+    gcc $flags -D_POSIX_C_SOURCE=200809L $task "$archive" -lpthread -ldl -lm \
+      -o "$out/rtos_task-$precision"
+    "$out/rtos_task-$precision"
   done
 else
   skipped "C programs on the host: no gcc"
@@ -119,6 +124,9 @@ if command -v valgrind > /dev/null && command -v gcc > /dev/null; then
     grep -q "total heap usage: 0 allocs" "$out/valgrind.txt" ||
       { cat "$out/valgrind.txt"; fail "$program: allocates"; }
   done
+  # Threads are allocated by the stand-in for the operating system.
+  valgrind --error-exitcode=9 --log-file="$out/valgrind.txt" "$out/rtos_task-f64" > /dev/null ||
+    { cat "$out/valgrind.txt"; exit 1; }
   echo "no error, no allocation"
 else
   skipped "valgrind of the C programs: no valgrind or no gcc"
@@ -146,6 +154,10 @@ else
         fail "$program: a panic can be reached"
       fi
     done
+    # The task skeleton compiles; it runs with an operating system only.
+    # shellcheck disable=SC2086
+    arm-none-eabi-gcc $flags -ffreestanding -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard \
+      -c rtos_task.c -o "$out/rtos_task.o"
     arm-none-eabi-size "$out/bare_loop-$precision.elf"
     if command -v qemu-system-arm > /dev/null; then
       for program in $programs; do
