@@ -1,5 +1,5 @@
 //! What needs more than one cargo command: images for the Cortex-M7 are built, run
-//! in QEMU and judged here.
+//! in QEMU and judged here, and two builds of `hil-sim` are compared.
 //!
 //! Exit codes: 0 as it should be, 1 not so, 2 wrong usage or a tool is missing (the
 //! line that installs it is printed).
@@ -15,6 +15,7 @@ mod host;
 mod limits;
 mod panic_free;
 mod placement;
+mod same_bytes;
 mod selftest;
 mod stack;
 mod table;
@@ -39,7 +40,14 @@ fri-m7 --check         the same by itself: trace as without a board, safe output
                        emergency stop and without a robot; with --serial the first
                        second over the serial port
 board-m7               the skeleton for the STM32H743: builds, code in ITCM, data in DTCM
-missing-m7             prints what has to be installed for the first three, exit code 2 if anything";
+missing-m7             prints what has to be installed for the first three, exit code 2 if anything
+
+same-bytes BASE [NEW] [--ignore PART]...
+                       results of two builds of hil-sim, byte by byte: built-in
+                       scenarios, paper, explain of 200 random states. BASE and NEW are
+                       executables or git revisions; NEW is the working tree unless
+                       given. CSV columns and JSON paths with PART in their name may
+                       differ";
 
 /// What came out: a verdict, or why there is none.
 type Outcome = Result<bool, tools::Trouble>;
@@ -60,6 +68,13 @@ fn main() -> ExitCode {
         ["fri-m7", "--check", "--serial"] => fri_check::run(Link::Serial),
         ["board-m7"] => placement::run(),
         ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
+        ["same-bytes", ref words @ ..] => match same_bytes::Comparison::parse(words) {
+            Ok(comparison) => comparison.run(),
+            Err(wrong) => {
+                eprintln!("{wrong}");
+                return 2.into();
+            }
+        },
         _ => {
             eprintln!("{USAGE}");
             return 2.into();
