@@ -44,10 +44,6 @@ count() {
     "$binary" "$what" > "$work/names" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
   awk '/^desc: Trigger: --dump-after/ { wanted = 1 } /^(totals|summary):/ && wanted { print $2; wanted = 0 }' \
     "$work/out" > "$work/counts"
-  if [ "$name" != step ]; then
-    grep " $name\$" "$work/names" > "$work/of_stage"
-    mv "$work/of_stage" "$work/names"
-  fi
   if [ "$(wc -l < "$work/names")" != "$(wc -l < "$work/counts")" ]; then
     echo "callgrind gave $(wc -l < "$work/counts") counts for $(wc -l < "$work/names") calls" >&2
     exit 1
@@ -57,10 +53,7 @@ count() {
 }
 {
   count "$([ "$mode" = --quick ] && echo quick || echo step)" step
-  for name in kinematics dynamics cholesky_inside_dynamics task_rows hierarchy motion command \
-    demand limits observer_update observer_apply; do
-    count stages "$name"
-  done
+  count stages stage
 } > "$work/all"
 
 awk '

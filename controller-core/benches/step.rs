@@ -7,12 +7,12 @@ mod cases;
 use std::hint::black_box;
 use std::time::Duration;
 
-use cases::stages::{self as stage, STAGES, Stages};
+use cases::stages::{stage, step};
 use cases::{Case, levels, states};
-use controller_core::controller::ControllerState;
-use controller_core::observer::Observer;
+use controller_core::cycle::record::Recorder;
+use controller_core::cycle::{Data, Input};
 use controller_core::real::Real;
-use controller_core::record::Recorder;
+use controller_core::{Controller, State};
 use criterion::Criterion;
 
 /// Whole cycles, over the random states in turn: denormal numbers, which the others
@@ -22,14 +22,14 @@ fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
     let random = states.iter().filter(|input| input.kind == "random");
     let inputs: Vec<_> = random.map(|input| case.typed(input)).collect();
     let mut next = inputs.iter().cycle();
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let mut recorder = Recorder::new();
     criterion.bench_function(&format!("{} step", case.name), |bencher| {
         bencher.iter(|| {
             let Some((measurement, reference)) = next.next() else {
                 unreachable!("the states go round");
             };
-            stage::step(
+            step(
                 black_box(&case.controller),
                 &mut state,
                 &mut recorder,
@@ -43,48 +43,19 @@ fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
 
 /// Every stage alone, in one state: its work does not depend on the data.
 fn stages<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
-    let mut observer = Observer::new();
-    let input = &states()[0];
-    let at = Stages::run(case, &mut observer, input);
-    let Case { model, config, .. } = case;
-    let Stages {
-        joints,
-        reference,
-        kinematics,
-        dynamics,
-        rows,
-        hierarchy,
-        motion,
-        demand,
-        torque,
-        ..
-    } = &at;
-    let cycle = at.cycle();
+    let (measurement, reference) = case.typed(&states()[0]);
+    let input = Input {
+        measurement: &measurement,
+        reference: &reference,
+    };
+    let mut data = Data::new();
+    case.controller.evaluate(&input, &mut data);
     let mut group = criterion.benchmark_group(case.name.clone());
-    let mut remaining = STAGES.iter();
-    // In the order of STAGES, which gives the names.
-    macro_rules! time {
-        ($($function:ident($($argument:expr),*);)*) => {$(
-            assert_eq!(remaining.next(), Some(&stringify!($function)));
-            group.bench_function(stringify!($function), |bencher| {
-                bencher.iter(|| stage::$function($(black_box($argument)),*));
-            });
-        )*};
+    for (name, run) in Controller::<T>::STAGES {
+        group.bench_function(name.text(), |bencher| {
+            bencher.iter(|| stage(run, black_box(&case.controller), &input, &mut data));
+        });
     }
-    time! {
-        kinematics(model, joints);
-        dynamics(model, kinematics, joints);
-        cholesky_inside_dynamics(dynamics);
-        observer_update(&mut observer, config, &dynamics.momentum);
-        task_rows(config, reference, kinematics, joints);
-        hierarchy(rows, dynamics);
-        motion(dynamics, hierarchy, joints);
-        command(config, (dynamics, rows, hierarchy, motion), joints, &reference.posture);
-        demand(&cycle);
-        limits(demand, model.torque_limit());
-        observer_apply(&mut observer, dynamics, joints, torque);
-    }
-    assert_eq!(remaining.next(), None, "every stage is timed");
     group.finish();
 }
 

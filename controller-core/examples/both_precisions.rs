@@ -4,49 +4,38 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::joint::{JointVector, Vector3, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::joint::JointVector;
 use controller_core::real::Real;
-use controller_core::task::{Axes, Task, TaskReference};
+use controller_core::{
+    Axes, Controller, ControllerConfig, Measurement, NullSpace, Reference, State, Target, Task,
+    TaskGains, TaskSet,
+};
 
 /// Flange held above a compliant null space: torque of the first cycle \[Nm\], or
 /// nothing where the configuration is refused.
 fn first_torque<T: Real>(q: [f64; 7]) -> Option<[f64; 7]> {
-    let model = ArmModel::<T>::new(&LWR_IV).ok()?;
-    let flange = LinkPoint {
-        link: 7,
-        offset: Vector3::from([0.0, 0.0, 0.078].map(T::from_f64)),
-    };
+    let gains = TaskGains::uniform(400.0, 40.0);
     let config = ControllerConfig {
-        tasks: core::iter::once(Task::uniform(flange, Axes::XYZ, 400.0, 40.0)).collect(),
-        null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
-            posture: Posture::Constant,
-        },
-        observer_gain: JointVector::from([T::from_f64(50.0); 7]),
-        cycle_s: T::from_f64(0.002),
+        tasks: TaskSet::new(&[Task::position(LWR_IV_FLANGE, Axes::XYZ, gains)]).ok()?,
+        null_space: NullSpace::diagonal(
+            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
+            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
+        ),
+        observer_gain: [50.0; 7],
+        cycle_s: 0.002,
         dead_cycles: 0,
     };
-    let controller = Controller::new(&model, &config).ok()?;
+    let controller = Controller::<T>::new(&LWR_IV, &config).ok()?;
     let q = JointVector::from(q.map(T::from_f64));
     let measurement = Measurement {
         q,
         dq: JointVector::from([T::ZERO; 7]),
         interval_s: T::from_f64(0.002),
     };
-    let mut reference = Reference {
-        posture: q,
-        ..Reference::new()
-    };
-    let target = Vector3::from([-0.4, 0.1, 0.8].map(T::from_f64));
-    reference.tasks.push(TaskReference::rest(target)).ok()?;
-    let step = controller.step(&mut ControllerState::new(), &measurement, &reference);
+    let target = Target::position([-0.4, 0.1, 0.8].map(T::from_f64));
+    let reference = Reference::new([target], q);
+    let step = controller.step(&mut State::new(), &measurement, &reference);
     Some(step.torque.map(Real::to_f64).into())
 }
 

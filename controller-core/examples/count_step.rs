@@ -12,18 +12,18 @@ mod cases;
 
 use std::hint::black_box;
 
-use cases::stages::{STAGES, Stages, step};
+use cases::stages::{stage, step};
 use cases::{Case, Input, levels, states};
-use controller_core::controller::ControllerState;
-use controller_core::observer::Observer;
+use controller_core::cycle::record::Recorder;
+use controller_core::cycle::{self, Data};
 use controller_core::real::Real;
-use controller_core::record::Recorder;
+use controller_core::{Controller, State};
 
 /// Whole cycles: each state is preceded by one that is not counted apart, so that
 /// the observer runs. A cycle must not end in a fault: that is another path.
 fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
     let mut recorder = Recorder::new();
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     for (index, input) in inputs.iter().enumerate() {
         let (measurement, reference) = case.typed(input);
         if state.fault().is_some() || index == 0 {
@@ -48,11 +48,23 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
 }
 
 fn stages<T: Real>(case: &Case<T>, inputs: &[Input]) {
-    let mut observer = Observer::new();
+    let mut data = Data::new();
     for input in inputs {
-        black_box(&Stages::run(case, &mut observer, input));
-        for stage in STAGES {
-            println!("{} {stage}", case.name);
+        let (measurement, reference) = case.typed(input);
+        let input = cycle::Input {
+            measurement: &measurement,
+            reference: &reference,
+        };
+        // The observer runs from the second cycle on.
+        case.controller.evaluate(&input, &mut data);
+        for (name, run) in Controller::<T>::STAGES {
+            stage(
+                black_box(run),
+                black_box(&case.controller),
+                black_box(&input),
+                black_box(&mut data),
+            );
+            println!("{} {}", case.name, name.text().replace(' ', "_"));
         }
     }
 }

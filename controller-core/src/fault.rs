@@ -1,59 +1,145 @@
 //! Three kinds of trouble stay apart. A configuration that cannot be is a
-//! `Result` at construction ([`crate::config::ConfigError`]). A *fault* is latched: the arm is
+//! `Result` at construction ([`crate::error::ConfigError`]). A *fault* is latched: the arm is
 //! held by gravity torque until the caller resets it. A *limit* that was active
 //! is a flag of one cycle; its torque is valid.
+//!
+//! Faults and limits have numbers that go over wires and into logs. [`numbers!`]
+//! is the one list of them: the enumerations here, the names of the C interface and
+//! the tables of docs/architecture.md are made from it or held against it.
 
 use core::fmt;
 
-/// A set of up to eight joints or rows: bit i is joint i + 1 or task row i + 1.
+/// Calls `$define!` with every fault (32 to 95) and every limit (96 to 159):
+/// `Variant = number, "name", CNAME, "meaning";`. A number is never used twice, not
+/// even after its meaning is gone.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! numbers {
+    ($define:ident) => {
+        $define! {
+            faults {
+                Implausible = 32, "implausible", "IMPLAUSIBLE",
+                    "a measurement or reference that cannot be true";
+                NonFiniteTorque = 33, "non_finite_torque", "NON_FINITE_TORQUE",
+                    "the law gave a torque that is not finite";
+                WrongTarget = 34, "wrong_target", "WRONG_TARGET",
+                    "a target of another kind than the task of its level";
+            }
+            limits {
+                Saturated = 96, "saturated", "SATURATED",
+                    "torque of a joint cut to its limit";
+                Rank = 97, "rank", "RANK",
+                    "task row without acceleration: the rows above leave no motion for it";
+            }
+        }
+    };
+}
+
+macro_rules! enumerations {
+    (
+        faults { $($fault:ident = $fault_number:literal, $fault_name:literal, $fault_c:literal,
+            $fault_meaning:literal;)* }
+        limits { $($limit:ident = $limit_number:literal, $limit_name:literal, $limit_c:literal,
+            $limit_meaning:literal;)* }
+    ) => {
+        /// What a fault is about. The numbers are stable: they go over wires and into logs.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+        #[non_exhaustive]
+        #[repr(u8)]
+        pub enum FaultKind {
+            $(#[doc = $fault_meaning] $fault = $fault_number,)*
+        }
+
+        impl FaultKind {
+            /// All of them, by number.
+            pub const ALL: &[Self] = &[$(Self::$fault),*];
+
+            /// The name used in logs and reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$fault => $fault_name,)* }
+            }
+
+            /// What it means.
+            #[must_use]
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Self::$fault => $fault_meaning,)* }
+            }
+        }
+
+        /// What limited or degraded a cycle whose torque is valid. The numbers are
+        /// stable, as those of faults.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+        #[non_exhaustive]
+        #[repr(u8)]
+        pub enum LimitKind {
+            $(#[doc = $limit_meaning] $limit = $limit_number,)*
+        }
+
+        impl LimitKind {
+            /// All of them, by number.
+            pub const ALL: &[Self] = &[$(Self::$limit),*];
+
+            /// The name used in logs and reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$limit => $limit_name,)* }
+            }
+
+            /// What it means.
+            #[must_use]
+            pub const fn meaning(self) -> &'static str {
+                match self { $(Self::$limit => $limit_meaning,)* }
+            }
+        }
+    };
+}
+numbers!(enumerations);
+
+impl FaultKind {
+    /// Its stable number, 32 to 95.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+}
+
+impl LimitKind {
+    /// Its stable number, 96 to 159.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+}
+
+/// A set of up to eight indices: bit i is joint i + 1, or task row i + 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
-pub struct Flags(pub u8);
+pub struct IndexSet(pub u8);
 
-impl Flags {
+impl IndexSet {
     /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// Whether any flag is set.
+    /// Whether there is any index in it.
     #[must_use]
     pub fn any(self) -> bool {
         self.0 != 0
     }
 
-    /// Whether flag `index` (from 0) is set.
+    /// Whether `index` (from 0) is in it.
     #[must_use]
     pub fn contains(self, index: usize) -> bool {
         index < 8 && (self.0 >> index) & 1 != 0
     }
 
-    /// Sets flag `index` (from 0) where `on`.
+    /// Adds `index` (from 0) where `on`.
     #[inline(always)]
-    pub fn set_if(&mut self, index: usize, on: bool) {
+    pub(crate) fn insert_if(&mut self, index: usize, on: bool) {
         if index < 8 {
             self.0 |= u8::from(on) << index;
-        }
-    }
-}
-
-/// What a fault is about. The numbers are stable: they go over wires and into logs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
-#[non_exhaustive]
-#[repr(u8)]
-pub enum FaultKind {
-    /// A measurement or reference that cannot be true.
-    Implausible = 32,
-    /// The law gave a torque that is not finite.
-    NonFiniteTorque = 33,
-}
-
-impl FaultKind {
-    /// The name used in logs and reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Implausible => "implausible",
-            Self::NonFiniteTorque => "non_finite_torque",
         }
     }
 }
@@ -69,17 +155,25 @@ pub enum Quantity {
     Speed,
     /// h, the measured interval \[s\].
     Interval,
-    /// The reference of a task level.
-    TaskReference,
+    /// A number of the target of a level.
+    Target,
     /// The squared norm of the desired orientation of a level.
     Orientation,
+    /// The kind of the target of a level: [`POSITION_CODE`] or [`ORIENTATION_CODE`].
+    TargetKind,
     /// The desired posture of a joint \[rad\].
     PostureReference,
-    /// The number of task references.
-    ReferenceCount,
+    /// The number of targets.
+    TargetCount,
     /// The demanded torque of a joint \[Nm\].
     Torque,
 }
+
+/// A position, as value of [`Quantity::TargetKind`].
+pub const POSITION_CODE: f64 = 1.0;
+
+/// An orientation, as value of [`Quantity::TargetKind`].
+pub const ORIENTATION_CODE: f64 = 2.0;
 
 impl Quantity {
     fn name(self) -> &'static str {
@@ -87,10 +181,11 @@ impl Quantity {
             Self::Position => "position [rad] of joint",
             Self::Speed => "speed [rad/s] of joint",
             Self::Interval => "measured interval [s]",
-            Self::TaskReference => "reference of level",
+            Self::Target => "target of level",
             Self::Orientation => "squared quaternion norm of level",
+            Self::TargetKind => "kind of target of level",
             Self::PostureReference => "desired posture [rad] of joint",
-            Self::ReferenceCount => "number of task references",
+            Self::TargetCount => "number of targets",
             Self::Torque => "demanded torque [Nm] of joint",
         }
     }
@@ -120,6 +215,17 @@ impl fmt::Display for Fault {
         if self.index > 0 {
             write!(f, " {}", self.index)?;
         }
+        if self.quantity == Quantity::TargetKind {
+            let word = |code: f64| {
+                if code == ORIENTATION_CODE {
+                    "an orientation"
+                } else {
+                    "a position"
+                }
+            };
+            let (given, allowed) = (word(self.value), word(self.min));
+            return write!(f, " is {given}; allowed hold or {allowed}");
+        }
         write!(f, " is {}; ", self.value)?;
         if self.min == f64::MIN {
             write!(f, "it must be finite")
@@ -138,24 +244,34 @@ pub struct Status {
     /// The latched fault: the torque is the gravity torque of the last
     /// plausible posture.
     pub fault: Option<Fault>,
-    /// Joints whose torque was cut to its limit. Limit number 96.
-    pub saturated: Flags,
-    /// Task rows without acceleration, because the rows above them leave no
-    /// motion for them. Limit number 97.
-    pub rank: Flags,
+    /// Joints of [`LimitKind::Saturated`].
+    pub saturated: IndexSet,
+    /// Task rows of [`LimitKind::Rank`].
+    pub rank: IndexSet,
 }
 
 impl Status {
     /// No limit, no fault.
     pub const CLEAR: Self = Self {
         fault: None,
-        saturated: Flags::NONE,
-        rank: Flags::NONE,
+        saturated: IndexSet::NONE,
+        rank: IndexSet::NONE,
     };
 
     /// Nothing limited the cycle and there is no fault.
     #[must_use]
     pub fn is_clear(&self) -> bool {
-        *self == Self::default()
+        *self == Self::CLEAR
+    }
+
+    /// The limits that were active.
+    pub fn limits(&self) -> impl Iterator<Item = LimitKind> {
+        let active = [
+            (LimitKind::Saturated, self.saturated),
+            (LimitKind::Rank, self.rank),
+        ];
+        active
+            .into_iter()
+            .filter_map(|(kind, indices)| indices.any().then_some(kind))
     }
 }

@@ -73,14 +73,15 @@ fn cut<T: Real>(values: &[T; ALIKE]) -> JointVector<T> {
     vector
 }
 
-/// A diagonal joint-space matrix: the usual form of stiffness and damping.
-#[must_use]
-pub fn diagonal<T: Real>(values: [f64; DOF]) -> JointMatrix<T> {
-    let mut matrix = zeros();
-    for (i, value) in values.into_iter().enumerate() {
-        matrix[(i, i)] = T::from_f64(value);
+/// Whether every value is finite: x - x is 0 where x is, else NaN, which no sum loses.
+#[inline(always)]
+#[allow(clippy::eq_op)]
+pub(crate) fn all_finite<T: Real, const N: usize>(values: &SVector<T, N>) -> bool {
+    let mut sum = T::ZERO;
+    for i in 0..N {
+        sum += values[i] - values[i];
     }
-    matrix
+    sum == T::ZERO
 }
 
 /// Posture and speed of the arm at one instant.

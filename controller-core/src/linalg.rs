@@ -34,8 +34,7 @@ pub struct Cholesky<T: Real> {
 impl<T: Real> Cholesky<T> {
     /// No factor yet.
     #[must_use]
-    #[inline]
-    pub const fn empty() -> Self {
+    pub const fn new() -> Self {
         Self {
             l: zeros(),
             inverse_diagonal: zeros(),
@@ -46,17 +45,7 @@ impl<T: Real> Cholesky<T> {
     ///
     /// Never fails: a pivot below 1e-30 counts as 1e-30, so the factor of a
     /// matrix that is not positive definite is finite but meaningless. The mass
-    /// matrix of a validated model is always positive definite;
-    /// [`Cholesky::checked`] is for matrices from outside.
-    #[must_use]
-    #[inline]
-    pub fn new(a: &JointMatrix<T>) -> Self {
-        let mut factor = Self::empty();
-        factor.update(a);
-        factor
-    }
-
-    /// As [`Cholesky::new`], where the factor lies.
+    /// matrix of a validated arm is always positive definite.
     #[inline]
     pub fn update(&mut self, a: &JointMatrix<T>) {
         let Self {
@@ -83,25 +72,6 @@ impl<T: Real> Cholesky<T> {
                 l[(i, j)] = column[i] * inverse;
             }
         });
-    }
-
-    /// As [`Cholesky::new`], or the first index (0..7) whose pivot is not above
-    /// 1e-12 times the largest diagonal entry, with that pivot.
-    ///
-    /// # Errors
-    /// The matrix is not numerically positive definite.
-    pub fn checked(a: &JointMatrix<T>) -> Result<Self, (usize, f64)> {
-        let factor = Self::new(a);
-        let scale = (0..DOF).fold(T::ZERO, |largest, i| a[(i, i)].magnitude().larger(largest));
-        for j in 0..DOF {
-            let row_sum = (0..j).fold(T::ZERO, |sum, k| sum + factor.l[(j, k)] * factor.l[(j, k)]);
-            let pivot = a[(j, j)] - row_sum;
-            let definite = pivot > scale * T::from_f64(1e-12);
-            if !definite {
-                return Err((j, pivot.to_f64()));
-            }
-        }
-        Ok(factor)
     }
 
     /// The factor of the identity: whitening with it changes nothing.
@@ -188,6 +158,12 @@ impl<T: Real> Cholesky<T> {
             whole.transpose_mut();
         }
         whole
+    }
+}
+
+impl<T: Real> Default for Cholesky<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

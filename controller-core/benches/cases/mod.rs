@@ -4,15 +4,13 @@
 
 pub mod stages;
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::Controller;
-use controller_core::joint::{JointState, JointVector, Vector3, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV, LWR_IV_POINTS};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE, LWR_IV_POINTS};
+use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
-use controller_core::task::{Axes, Task, TaskReference};
+use controller_core::{
+    Axes, Controller, ControllerConfig, Measurement, NullSpace, Reference, Target, Task, TaskGains,
+    TaskSet,
+};
 
 /// Random states, besides the adversarial ones.
 const RANDOM: usize = 2_000;
@@ -20,8 +18,6 @@ const RANDOM: usize = 2_000;
 /// One controller.
 pub struct Case<T: Real> {
     pub name: String,
-    pub model: ArmModel<T>,
-    pub config: ControllerConfig<T>,
     pub controller: Controller<T>,
 }
 
@@ -40,64 +36,45 @@ pub struct Input {
 
 /// The controller with two or three levels, the null space counted.
 pub fn levels<T: Real>(count: usize) -> Case<T> {
-    let model = ArmModel::<T>::new(&LWR_IV).expect("the built-in arm");
-    let point = |name| {
-        let point = LWR_IV_POINTS.iter().find(|point| point.name == name);
-        let point = point.expect("a point of the arm");
-        LinkPoint {
-            link: point.link,
-            offset: Vector3::from(point.offset.map(T::from_f64)),
-        }
-    };
+    let wrist = LWR_IV_POINTS.iter().find(|named| named.name == "wrist");
+    let wrist = wrist.expect("a point of the arm").point;
+    let gains = TaskGains::uniform(400.0, 40.0);
     let tasks = [
-        Task::uniform(point("flange"), Axes::XYZ, 400.0, 40.0),
-        Task::uniform(point("wrist"), Axes::XY, 400.0, 40.0),
+        Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
+        Task::position(wrist, Axes::XY, gains),
     ];
     let config = ControllerConfig {
-        tasks: tasks.into_iter().take(count - 1).collect(),
-        null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
-            posture: Posture::Constant,
-        },
-        observer_gain: JointVector::repeat(T::from_f64(50.0)),
-        cycle_s: T::from_f64(0.002),
+        tasks: TaskSet::new(&tasks[..count - 1]).expect("valid tasks"),
+        null_space: NullSpace::diagonal(
+            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
+            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
+        ),
+        observer_gain: [50.0; 7],
+        cycle_s: 0.002,
         dead_cycles: 0,
     };
     Case {
         name: format!("{count}-levels-{}", std::any::type_name::<T>()),
-        controller: Controller::new(&model, &config).expect("a valid configuration"),
-        model,
-        config,
+        controller: Controller::new(&LWR_IV, &config).expect("a valid configuration"),
     }
 }
 
 impl<T: Real> Case<T> {
-    pub fn joints(&self, input: &Input) -> JointState<T> {
-        JointState {
+    pub fn typed(&self, input: &Input) -> (Measurement<T>, Reference<T>) {
+        let measurement = Measurement {
             q: JointVector::from(input.q.map(T::from_f64)),
             dq: JointVector::from(input.dq.map(T::from_f64)),
-        }
-    }
-
-    pub fn typed(&self, input: &Input) -> (Measurement<T>, Reference<T>) {
-        let JointState { q, dq } = self.joints(input);
-        let mut reference = self.controller.rest(&q);
-        let offset = T::from_f64(input.offset);
-        for task in &mut reference.tasks {
-            *task = TaskReference {
-                x: task.x.map(|x| x + offset),
-                dx: Vector3::repeat(offset),
-                ddx: Vector3::repeat(offset),
-                ..*task
-            };
-        }
-        reference.posture = JointVector::from(input.posture.map(T::from_f64));
-        let measurement = Measurement {
-            q,
-            dq,
             interval_s: T::from_f64(input.interval_s),
         };
+        let mut reference = self.controller.rest_reference(&measurement.q);
+        let offset = T::from_f64(input.offset);
+        for target in reference.targets_mut() {
+            if let Target::Position { x, dx, ddx } = target {
+                *x = x.map(|x| x + offset);
+                (*dx, *ddx) = (Vector3::repeat(offset), Vector3::repeat(offset));
+            }
+        }
+        reference.posture = JointVector::from(input.posture.map(T::from_f64));
         (measurement, reference)
     }
 }

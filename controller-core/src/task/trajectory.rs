@@ -1,10 +1,10 @@
 //! Reference motions of a point: hold, straight move, circle and spiral, all
 //! starting and, where they end, ending at rest with zero acceleration.
 
-use crate::joint::{Vector3, zeros};
-use crate::orientation::{self, Quaternion};
+use crate::joint::Vector3;
 use crate::real::Real;
-use crate::task::TaskReference;
+use crate::task::Target;
+use crate::task::orientation::{self, Quaternion};
 
 /// b(s) = 10 s^3 - 15 s^4 + 6 s^5 and its first two derivatives by s, for s
 /// limited to 0..1: 0 before, 1 after, twice continuously differentiable.
@@ -79,17 +79,17 @@ impl<T: Real> Trajectory<T> {
     /// not positive gives a reference that is not finite, which the controller
     /// refuses as implausible.
     #[must_use]
-    pub fn sample(&self, origin: &Vector3<T>, t_s: T) -> TaskReference<T> {
+    pub fn sample(&self, origin: &Vector3<T>, t_s: T) -> Target<T> {
         let t_s = t_s.larger(T::ZERO);
         match *self {
-            Self::Hold => TaskReference::rest(*origin),
+            Self::Hold => Target::position(*origin),
             Self::Move { by, duration_s } => {
                 let rate = T::ONE / duration_s;
                 let [b, db, ddb] = quintic(t_s * rate);
-                TaskReference {
+                Target::Position {
+                    x: origin + by * b,
                     dx: by * (db * rate),
                     ddx: by * (ddb * rate * rate),
-                    ..TaskReference::rest(origin + by * b)
                 }
             }
             Self::Turn {
@@ -108,13 +108,13 @@ impl<T: Real> Trajectory<T> {
                 let (sin, cos, omega) = phase(t_s, period_s);
                 let (spin, pull) = (b * omega, b * omega * omega);
                 let twist = (db + db) * omega;
-                TaskReference {
+                Target::Position {
+                    x: origin + plane.vector(b * cos, b * sin),
                     dx: plane.vector(db * cos - spin * sin, db * sin + spin * cos),
                     ddx: plane.vector(
                         ddb * cos - twist * sin - pull * cos,
                         ddb * sin + twist * cos - pull * sin,
                     ),
-                    ..TaskReference::rest(origin + plane.vector(b * cos, b * sin))
                 }
             }
         }
@@ -144,10 +144,10 @@ impl<T: Real> Rotation<T> {
     /// Reference at time `t_s` \[s\] since the start, from the orientation
     /// `origin`. Time before the start counts as the start.
     #[must_use]
-    pub fn sample(&self, origin: &Quaternion<T>, t_s: T) -> TaskReference<T> {
+    pub fn sample(&self, origin: &Quaternion<T>, t_s: T) -> Target<T> {
         let t_s = t_s.larger(T::ZERO);
         match *self {
-            Self::Hold => TaskReference::facing(*origin),
+            Self::Hold => Target::orientation(*origin),
             Self::Swing {
                 axis,
                 amplitude_rad,
@@ -164,10 +164,10 @@ impl<T: Real> Rotation<T> {
                 let (sin, cos, omega) = phase(t_s, period_s);
                 let spin = b * omega;
                 let swung = orientation::about_axis(&axis, b * sin);
-                TaskReference {
-                    dx: axis * (db * sin + spin * cos),
-                    ddx: axis * (ddb * sin + (db + db) * omega * cos - spin * omega * sin),
-                    ..TaskReference::facing(orientation::product(&swung, origin))
+                Target::Orientation {
+                    q: orientation::product(&swung, origin),
+                    w: axis * (db * sin + spin * cos),
+                    dw: axis * (ddb * sin + (db + db) * omega * cos - spin * omega * sin),
                 }
             }
         }
@@ -182,12 +182,6 @@ fn phase<T: Real>(t_s: T, period_s: T) -> (T, T, T) {
     let tau = T::from_f64(core::f64::consts::TAU);
     let (sin, cos) = ((turns - turns.floor_small()) * tau).sine_cosine();
     (sin, cos, tau / period_s)
-}
-
-impl<T: Real> Default for TaskReference<T> {
-    fn default() -> Self {
-        Self::rest(zeros())
-    }
 }
 
 #[cfg(test)]
@@ -237,12 +231,16 @@ mod tests {
         ] {
             for i in 1..900 {
                 let t = f64::from(i) * 0.023;
-                let [before, now, after] =
-                    [t - step, t, t + step].map(|t| motion.sample(&origin, t));
-                let velocity = (after.x - before.x) / (2.0 * step);
-                let acceleration = (after.dx - before.dx) / (2.0 * step);
-                assert!((velocity - now.dx).amax() < 2e-6, "{motion:?} {t}");
-                assert!((acceleration - now.ddx).amax() < 2e-4, "{motion:?} {t}");
+                let [before, now, after] = [t - step, t, t + step].map(|t| {
+                    let Target::Position { x, dx, ddx } = motion.sample(&origin, t) else {
+                        panic!("a trajectory gives positions");
+                    };
+                    [x, dx, ddx]
+                });
+                let velocity = (after[0] - before[0]) / (2.0 * step);
+                let acceleration = (after[1] - before[1]) / (2.0 * step);
+                assert!((velocity - now[1]).amax() < 2e-6, "{motion:?} {t}");
+                assert!((acceleration - now[2]).amax() < 2e-4, "{motion:?} {t}");
             }
         }
     }
@@ -260,11 +258,16 @@ mod tests {
         let step = 1e-4;
         for i in 1..400 {
             let t = f64::from(i) * 0.023;
-            let [before, now, after] = [t - step, t, t + step].map(|t| swing.sample(&origin, t));
-            let turned = orientation::error(&after.orientation, &before.orientation);
-            assert!((turned / (2.0 * step) - now.dx).amax() < 2e-6, "{t}");
-            let acceleration = (after.dx - before.dx) / (2.0 * step);
-            assert!((acceleration - now.ddx).amax() < 2e-4, "{t}");
+            let [before, now, after] = [t - step, t, t + step].map(|t| {
+                let Target::Orientation { q, w, dw } = swing.sample(&origin, t) else {
+                    panic!("a rotation gives orientations");
+                };
+                (q, w, dw)
+            });
+            let turned = orientation::chord(&after.0, &before.0);
+            assert!((turned / (2.0 * step) - now.1).amax() < 2e-6, "{t}");
+            let acceleration = (after.1 - before.1) / (2.0 * step);
+            assert!((acceleration - now.2).amax() < 2e-4, "{t}");
         }
     }
 }

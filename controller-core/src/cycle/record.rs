@@ -1,10 +1,10 @@
 //! One cycle as data, and a ring of the last cycles in the caller's storage:
 //! what happened before a fault.
 
-use crate::controller::Step;
+use super::controller::Step;
+use super::measurement::Measurement;
 use crate::fault::Status;
 use crate::joint::{JointVector, zeros};
-use crate::measurement::Measurement;
 use crate::real::Real;
 
 /// What went into a cycle and what came out.

@@ -11,9 +11,9 @@
 
 use nalgebra::Matrix4;
 
+use crate::arm::{ArmModel, LinkModel};
 use crate::joint::{DOF, JointMatrix, zeros};
 use crate::linalg::{Cholesky, largest_eigenpair};
-use crate::model::{ArmModel, Link};
 use crate::real::Real;
 
 /// What h lambda must stay below with `dead_cycles` cycles between measurement
@@ -59,7 +59,7 @@ pub struct DampingRate {
 
 /// The fastest mode over the set of postures.
 #[must_use]
-pub fn fastest_mode<T: Real>(model: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
+pub fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
     let mut fastest = DampingRate {
         rate: 0.0,
         joint: 1,
@@ -67,7 +67,7 @@ pub fn fastest_mode<T: Real>(model: &ArmModel<T>, damping: &JointMatrix<T>) -> D
     };
     // By reference: a copy of the set would lie on the stack.
     for posture in &POSTURES_DEG {
-        let mode = mode_at(model, damping, posture.map(f64::to_radians));
+        let mode = mode_at(arm, damping, posture.map(f64::to_radians));
         if mode.rate > fastest.rate {
             fastest = mode;
         }
@@ -78,11 +78,11 @@ pub fn fastest_mode<T: Real>(model: &ArmModel<T>, damping: &JointMatrix<T>) -> D
 /// The fastest mode at one posture \[rad\].
 #[must_use]
 pub fn mode_at<T: Real>(
-    model: &ArmModel<T>,
+    arm: &ArmModel<T>,
     damping: &JointMatrix<T>,
     posture: [f64; DOF],
 ) -> DampingRate {
-    let factor = mass_factor(model, &posture);
+    let factor = mass_factor(arm, &posture);
     let (rate, joint) = fastest_of(&factor, damping);
     DampingRate {
         rate: rate.to_f64(),
@@ -94,14 +94,16 @@ pub fn mode_at<T: Real>(
 /// L of M = L L^T at a posture \[rad\]. Behind a call, as [`fastest_of`]: their work
 /// sets take turns on the stack instead of lying there together.
 #[inline(never)]
-fn mass_factor<T: Real>(model: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T> {
+fn mass_factor<T: Real>(arm: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T> {
     let mut mass_matrix = zeros();
-    set_mass_matrix(model, posture, &mut mass_matrix);
-    Cholesky::new(&mass_matrix)
+    set_mass_matrix(arm, posture, &mut mass_matrix);
+    let mut factor = Cholesky::new();
+    factor.update(&mass_matrix);
+    factor
 }
 
 /// M(q) \[kg m2\], its lower triangle, by homogeneous coordinates: few instructions in
-/// loops where [`crate::dynamics`] has fast ones in a row, which would have to be
+/// loops where [`crate::arm::dynamics`] has fast ones in a row, which would have to be
 /// in the flash a second time.
 ///
 /// With P the integral of p p^T dm over all links behind joint i, p = (x, y, z, 1) in
@@ -110,24 +112,24 @@ fn mass_factor<T: Real>(model: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T
 /// momentum about z as H_xy - H_yx.
 #[inline(never)]
 fn set_mass_matrix<T: Real>(
-    model: &ArmModel<T>,
+    arm: &ArmModel<T>,
     posture: &[f64; DOF],
     mass_matrix: &mut JointMatrix<T>,
 ) {
     let mut group = Matrix4::zeros();
     for i in (0..DOF).rev() {
-        let [x, y, z, one] = &model.links[i].moments;
+        let [x, y, z, one] = &arm.links[i].moments;
         group += Matrix4::from_columns(&[*x, *y, *z, *one]);
-        let mut flow = Matrix4::zeros();
-        flow.set_column(0, &-group.column(1));
-        flow.set_column(1, &group.column(0));
-        mass_matrix[(i, i)] = flow.m12 - flow.m21;
+        let mut velocity_moment = Matrix4::zeros();
+        velocity_moment.set_column(0, &-group.column(1));
+        velocity_moment.set_column(1, &group.column(0));
+        mass_matrix[(i, i)] = velocity_moment.m12 - velocity_moment.m21;
         for j in (0..i).rev() {
-            flow = inward(&model.links[j], posture[j + 1], &flow);
-            mass_matrix[(i, j)] = flow.m12 - flow.m21;
+            velocity_moment = to_parent(&arm.links[j], posture[j + 1], &velocity_moment);
+            mass_matrix[(i, j)] = velocity_moment.m12 - velocity_moment.m21;
         }
         if i > 0 {
-            group = inward(&model.links[i - 1], posture[i], &group);
+            group = to_parent(&arm.links[i - 1], posture[i], &group);
         }
     }
 }
@@ -135,11 +137,11 @@ fn set_mass_matrix<T: Real>(
 /// A X A^T with A from the frame of a joint to that of the joint before it: turned
 /// about z by its `angle` \[rad\], then the twist and lengths of the `link` between.
 #[inline(never)]
-fn inward<T: Real>(link: &Link<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
+fn to_parent<T: Real>(link: &LinkModel<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
     let (sine, cosine) = T::from_f64(angle).sine_cosine();
     let (zero, one) = (T::ZERO, T::ONE);
     let (sin_alpha, cos_alpha) = (link.sin_alpha, link.cos_alpha);
-    let way = Matrix4::new(
+    let transform = Matrix4::new(
         cosine,
         -sine,
         zero,
@@ -157,7 +159,7 @@ fn inward<T: Real>(link: &Link<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
         zero,
         one,
     );
-    way * x * way.transpose()
+    transform * x * transform.transpose()
 }
 
 /// lambda_max(L^-1 D L^-T) \[1/s\], and the joint, 1..=7, that dissipates most in
@@ -179,27 +181,29 @@ fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, us
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Dynamics;
+    use crate::arm::dynamics::Dynamics;
+    use crate::arm::kinematics::Kinematics;
+    use crate::arm::{ArmParameters, LWR_IV};
     use crate::joint::{JointState, JointVector};
-    use crate::kinematics::Kinematics;
-    use crate::model::{ArmParameters, LWR_IV};
 
     /// Largest difference from the mass matrix of the cycle, relative to its size.
-    fn difference<T: Real>(arm: &ArmParameters) -> f64 {
-        let model = ArmModel::<T>::new(arm).expect("an arm");
+    fn difference<T: Real>(parameters: &ArmParameters) -> f64 {
+        let arm = &ArmModel::<T>::new(parameters).expect("an arm");
         let mut worst = 0.0f64;
         for (number, posture) in (1..).zip(&POSTURES_DEG) {
             let mut posture = posture.map(f64::to_radians);
             posture[0] = 0.3 * f64::from(number);
             posture[6] -= 0.2 * f64::from(number);
             let mut own = zeros();
-            set_mass_matrix(&model, &posture, &mut own);
+            set_mass_matrix(arm, &posture, &mut own);
             let state = JointState {
                 q: JointVector::from(posture.map(T::from_f64)),
                 dq: zeros(),
             };
-            let kinematics = Kinematics::new(&model, &state);
-            let cycle = Dynamics::new(&model, &kinematics, &state).mass_matrix;
+            let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
+            kinematics.update(arm, &state);
+            dynamics.update(arm, &kinematics, &state);
+            let cycle = dynamics.mass_matrix;
             for i in 0..DOF {
                 for j in 0..=i {
                     let size = (cycle[(i, i)] * cycle[(j, j)]).to_f64();

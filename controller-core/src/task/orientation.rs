@@ -1,5 +1,5 @@
-//! Orientations as unit quaternions, and the error between two of them along
-//! the shortest path.
+//! Orientations as unit quaternions, and the chord between two of them along the
+//! shortest path.
 
 use crate::joint::{Matrix3, Vector3};
 use crate::real::Real;
@@ -61,19 +61,30 @@ pub fn of_rotation<T: Real>(r: &Matrix3<T>) -> Quaternion<T> {
     Quaternion::from(best) * (T::HALF / largest.larger(T::HALF).square_root())
 }
 
-/// Twice the vector part of desired * actual^-1 with its sign chosen for the
-/// shortest path: 2 sin(theta / 2) times the axis about which the actual
-/// orientation must turn, base-plate axes. Equal to the rotation vector for small
-/// angles, largest (2) at half a turn. `desired` need not be normalised and its
-/// sign does not matter.
+/// The orientation error of the law: the chord 2 sin(theta / 2) of the angle theta
+/// between the orientations, times the axis about which the actual one must turn the
+/// short way; base-plate axes, \[1\]. It is twice the vector part of
+/// desired * actual^-1. For small angles it equals the rotation vector; it is largest
+/// (2) at half a turn. `desired` need not be normalised and its sign does not matter.
 #[must_use]
 #[inline]
-pub fn error<T: Real>(desired: &Quaternion<T>, actual: &Quaternion<T>) -> Vector3<T> {
+pub fn chord<T: Real>(desired: &Quaternion<T>, actual: &Quaternion<T>) -> Vector3<T> {
     let (d, a) = (vector_part(desired), vector_part(actual));
     let w = desired.dot(actual);
     let v = d * actual[0] - a * desired[0] - d.cross(&a);
     let norm = desired.dot(desired).square_root();
     v * ((T::ONE + T::ONE).with_sign_of(w) / norm)
+}
+
+/// The rotation vector theta times axis \[rad\] that belongs to a chord: the angle
+/// itself, for figures.
+#[must_use]
+pub fn rotation_vector(chord: &Vector3<f64>) -> Vector3<f64> {
+    let length = libm::sqrt(chord.dot(chord));
+    if length < 1e-8 {
+        return *chord;
+    }
+    chord * (2.0 * libm::asin(f64::min(0.5 * length, 1.0)) / length)
 }
 
 fn vector_part<T: Real>(q: &Quaternion<T>) -> Vector3<T> {
@@ -83,6 +94,7 @@ fn vector_part<T: Real>(q: &Quaternion<T>) -> Vector3<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::PI;
 
     /// Rotation about a unit axis by an angle, by Rodrigues' formula.
     fn rodrigues(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
@@ -94,10 +106,11 @@ mod tests {
     }
 
     /// All angles up to and beyond half a turn, both signs of the desired
-    /// quaternion: the error turns the short way, 2 sin of half the angle. The
+    /// quaternion: the chord turns the short way, 2 sin of half the angle, and
+    /// its rotation vector has the angle itself. The
     /// quaternion of a matrix is accurate to some units of rounding.
     #[test]
-    fn the_error_takes_the_shortest_path_whatever_the_sign() {
+    fn the_chord_takes_the_shortest_path_whatever_the_sign() {
         let axes = [
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],
@@ -114,14 +127,18 @@ mod tests {
                     2.0 * half * 1.0_f64.copysign(cosine)
                 };
                 for sign in [1.0, -1.0, 1.3] {
-                    let e = error(&(desired * sign), &start);
+                    let e = chord(&(desired * sign), &start);
                     assert!((e - expected).amax() < 1e-14, "{angle} {e}");
+                    // Near half a turn the arc sine loses half the digits.
+                    let short = (angle.abs() + PI).rem_euclid(2.0 * PI) - PI;
+                    let length = rotation_vector(&e).norm();
+                    assert!((length - short.abs()).abs() < 1e-7, "{angle} {length}");
                 }
                 let matrix = rodrigues(&axis, angle);
                 let q = of_rotation(&matrix);
                 assert!((q.norm() - 1.0).abs() < 1e-14);
                 assert!(
-                    error(&about_axis(&axis, angle), &q).amax() < 1e-13,
+                    chord(&about_axis(&axis, angle), &q).amax() < 1e-13,
                     "{angle}"
                 );
             }

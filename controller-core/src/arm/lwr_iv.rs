@@ -11,11 +11,11 @@
 //! Only M(q), C(q, dq) and g(q) are meaningful: single masses and centres of
 //! mass are not identified (27 free directions). There is no rotor inertia and
 //! no joint elasticity. M77 = 1.584e-4 kg m2, which bounds the damping of
-//! joint 7 (see [`crate::damping`]).
+//! joint 7 (see [`crate::law::sampling`]).
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::{ArmParameters, LinkParameters, NamedPoint};
+use super::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint};
 
 /// Points of the arm that tasks and contacts name. The elbow is 0.4 m from the
 /// shoulder, `upper` 0.25 m along the upper arm, `forearm` 0.2 m along the
@@ -23,30 +23,43 @@ use super::{ArmParameters, LinkParameters, NamedPoint};
 pub const LWR_IV_POINTS: [NamedPoint; 5] = [
     NamedPoint {
         name: "upper",
-        link: 3,
-        offset: [0.0, 0.15, 0.0],
+        point: LinkPoint {
+            link: Link::L3,
+            offset: [0.0, 0.15, 0.0],
+        },
     },
     NamedPoint {
         name: "elbow",
-        link: 3,
-        offset: [0.0, 0.0, 0.0],
+        point: LinkPoint {
+            link: Link::L3,
+            offset: [0.0, 0.0, 0.0],
+        },
     },
     NamedPoint {
         name: "forearm",
-        link: 5,
-        offset: [0.0, -0.19, 0.0],
+        point: LinkPoint {
+            link: Link::L5,
+            offset: [0.0, -0.19, 0.0],
+        },
     },
     NamedPoint {
         name: "wrist",
-        link: 5,
-        offset: [0.0, 0.0, 0.0],
+        point: LinkPoint {
+            link: Link::L5,
+            offset: [0.0, 0.0, 0.0],
+        },
     },
     NamedPoint {
         name: "flange",
-        link: 7,
-        offset: [0.0, 0.0, 0.078],
+        point: LWR_IV_FLANGE,
     },
 ];
+
+/// The flange of the LWR IV+: 0.078 m beyond the wrist along z7.
+pub const LWR_IV_FLANGE: LinkPoint = LinkPoint {
+    link: Link::L7,
+    offset: [0.0, 0.0, 0.078],
+};
 
 /// KUKA LWR IV+ without tool, mounted upright.
 pub const LWR_IV: ArmParameters = ArmParameters {

@@ -1,33 +1,15 @@
 //! Frames, joint axes and their rates, from one pass over the chain; points on
 //! any link with position, velocity and Jacobian rows.
 
+use crate::arm::link::Link;
+use crate::arm::model::ArmModel;
+use crate::arm::transform::AxisExchange;
 use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, sines_cosines, zeros};
 use crate::linalg::for_each_joint;
-use crate::model::{ArmModel, Twist};
 use crate::real::Real;
 
 /// Frames 0 (fixed) to 7 (flange side).
 const FRAMES: usize = DOF + 1;
-
-/// A point fixed to a link.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinkPoint<T: Real> {
-    /// Link that carries the point, 1..=7.
-    pub link: usize,
-    /// Position \[m\] in the DH frame of that link.
-    pub offset: Vector3<T>,
-}
-
-impl<T: Real> LinkPoint<T> {
-    /// The same point in another precision.
-    #[must_use]
-    pub fn cast<U: Real>(&self) -> LinkPoint<U> {
-        LinkPoint {
-            link: self.link,
-            offset: self.offset.map(|x| U::from_f64(x.to_f64())),
-        }
-    }
-}
 
 /// Where everything is and how fast it moves: base-plate frame, SI units.
 ///
@@ -83,25 +65,31 @@ pub struct JacobianRows<T: Real> {
 }
 
 impl<T: Real> Kinematics<T> {
-    /// One pass from base to flange.
+    /// Nothing computed yet.
     #[must_use]
-    #[inline]
-    pub fn new(model: &ArmModel<T>, state: &JointState<T>) -> Self {
-        let zero = Vector3::from([T::ZERO; 3]);
-        let (sine, cosine) = sines_cosines(&state.q);
-        let mut k = Self {
-            rotation: [Matrix3::identity(); FRAMES],
-            origin: [zero; FRAMES],
-            angular_velocity: [zero; FRAMES],
-            origin_velocity: [zero; FRAMES],
+    pub const fn new() -> Self {
+        Self {
+            rotation: [zeros(); FRAMES],
+            origin: [zeros(); FRAMES],
+            angular_velocity: [zeros(); FRAMES],
+            origin_velocity: [zeros(); FRAMES],
             axis: [zeros(); 3],
             axis_rate: [zeros(); 3],
             joint_origin: [zeros(); 3],
             joint_velocity: [zeros(); 3],
-            sine,
-            cosine,
-        };
-        k.origin[0].z = model.base_height;
+            sine: zeros(),
+            cosine: zeros(),
+        }
+    }
+
+    /// One pass from base to flange.
+    #[inline]
+    pub fn update(&mut self, arm: &ArmModel<T>, joints: &JointState<T>) {
+        let zero = Vector3::from([T::ZERO; 3]);
+        let k = self;
+        (k.sine, k.cosine) = sines_cosines(&joints.q);
+        k.rotation[0] = Matrix3::identity();
+        k.origin[0] = Vector3::from([T::ZERO, T::ZERO, arm.base_height]);
         let [mut x, mut y, mut z] = [
             [T::ONE, T::ZERO, T::ZERO],
             [T::ZERO, T::ONE, T::ZERO],
@@ -110,7 +98,7 @@ impl<T: Real> Kinematics<T> {
         .map(Vector3::from);
         let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
         for_each_joint!(i, {
-            let link = &model.links[i];
+            let link = &arm.links[i];
             let (sin, cos) = (k.sine[i], k.cosine[i]);
             let axis_rate = spin.cross(&z);
             for row in 0..3 {
@@ -119,19 +107,19 @@ impl<T: Real> Kinematics<T> {
                 k.joint_origin[row][i] = origin[row];
                 k.joint_velocity[row][i] = velocity[row];
             }
-            spin += z * state.dq[i];
+            spin += z * joints.dq[i];
             let turned_y = y * cos - x * sin;
             x = x * cos + y * sin;
             // The way to the next origin, most often none.
             if link.a != T::ZERO || link.d != T::ZERO {
-                let arm = x * link.a + z * link.d;
-                origin += arm;
-                velocity += spin.cross(&arm);
+                let shift = x * link.a + z * link.d;
+                origin += shift;
+                velocity += spin.cross(&shift);
             }
-            (y, z) = match link.twist.0 {
-                Twist::NONE => (turned_y, z),
-                Twist::RIGHT => (z, -turned_y),
-                Twist::LEFT => (-z, turned_y),
+            (y, z) = match link.exchange.0 {
+                AxisExchange::NONE => (turned_y, z),
+                AxisExchange::RIGHT => (z, -turned_y),
+                AxisExchange::LEFT => (-z, turned_y),
                 _ => (
                     turned_y * link.cos_alpha + z * link.sin_alpha,
                     z * link.cos_alpha - turned_y * link.sin_alpha,
@@ -142,24 +130,18 @@ impl<T: Real> Kinematics<T> {
             k.angular_velocity[i + 1] = spin;
             k.origin_velocity[i + 1] = velocity;
         });
-        k
     }
 
-    /// Frame that carries the point; links beyond 7 count as 7.
-    #[inline(always)]
-    fn frame(link: usize) -> usize {
-        if link < FRAMES { link } else { DOF }
-    }
-
-    /// Position and velocity of a point.
+    /// Position and velocity of the point with this `offset` \[m\] in the DH frame of
+    /// `link`.
     #[must_use]
     #[inline]
-    pub fn point(&self, point: &LinkPoint<T>) -> PointMotion<T> {
-        let frame = Self::frame(point.link);
-        let arm = self.rotation[frame] * point.offset;
+    pub fn point(&self, link: Link, offset: &Vector3<T>) -> PointMotion<T> {
+        let frame = link.number();
+        let lever = self.rotation[frame] * offset;
         PointMotion {
-            x: self.origin[frame] + arm,
-            dx: self.origin_velocity[frame] + self.angular_velocity[frame].cross(&arm),
+            x: self.origin[frame] + lever,
+            dx: self.origin_velocity[frame] + self.angular_velocity[frame].cross(&lever),
         }
     }
 
@@ -167,13 +149,13 @@ impl<T: Real> Kinematics<T> {
     /// dz x (x - o) + z x (dx - do) for the joints up to its link, else zero.
     #[must_use]
     #[inline]
-    pub fn point_jacobian(&self, link: usize, motion: &PointMotion<T>) -> JacobianRows<T> {
+    pub fn point_jacobian(&self, link: Link, motion: &PointMotion<T>) -> JacobianRows<T> {
         let mut rows = JacobianRows {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
         let column = |of: &[JointVector<T>; 3], i| Vector3::from([of[0][i], of[1][i], of[2][i]]);
-        for i in 0..link.min(DOF) {
+        for i in 0..link.number() {
             let (axis, axis_rate) = (column(&self.axis, i), column(&self.axis_rate, i));
             let lever = motion.x - column(&self.joint_origin, i);
             let lever_rate = motion.dx - column(&self.joint_velocity, i);
@@ -190,8 +172,8 @@ impl<T: Real> Kinematics<T> {
     /// Orientation and angular velocity of a link.
     #[must_use]
     #[inline]
-    pub fn link(&self, link: usize) -> LinkMotion<T> {
-        let frame = Self::frame(link);
+    pub fn link(&self, link: Link) -> LinkMotion<T> {
+        let frame = link.number();
         LinkMotion {
             rotation: self.rotation[frame],
             angular_velocity: self.angular_velocity[frame],
@@ -202,7 +184,7 @@ impl<T: Real> Kinematics<T> {
     /// up to its own, else zero.
     #[must_use]
     #[inline]
-    pub fn angular_jacobian(&self, link: usize) -> JacobianRows<T> {
+    pub fn angular_jacobian(&self, link: Link) -> JacobianRows<T> {
         let mut rows = JacobianRows {
             jacobian: self.axis,
             jacobian_dot: self.axis_rate,
@@ -215,11 +197,17 @@ impl<T: Real> Kinematics<T> {
 impl<T: Real> JacobianRows<T> {
     /// Joints behind `link` do not move it.
     #[inline(always)]
-    fn cut(&mut self, link: usize) {
+    fn cut(&mut self, link: Link) {
         for row in self.jacobian.iter_mut().chain(&mut self.jacobian_dot) {
-            if let Some(behind) = row.as_mut_slice().get_mut(link..) {
+            if let Some(behind) = row.as_mut_slice().get_mut(link.number()..) {
                 behind.fill(T::ZERO);
             }
         }
+    }
+}
+
+impl<T: Real> Default for Kinematics<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }

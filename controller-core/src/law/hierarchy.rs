@@ -21,70 +21,70 @@
 //! care of it. The factorisation uses Householder reflections, whose Q is
 //! orthogonal to rounding however close to singular the tasks are.
 
-use core::cmp::Ordering;
-
-use heapless::Vec;
-
-use crate::fault::Flags;
-use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::fault::IndexSet;
+use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::{Cholesky, for_each_joint};
+use crate::ranges::MAX_ROWS;
 use crate::real::Real;
-use crate::task::{MAX_ROWS, TaskRows};
+use crate::task::rows::TaskRows;
 
 /// A row whose R_kk^2 is below this \[1/kg\] is not resolvable given the rows
 /// above it: it gets no acceleration.
 pub const RANK_THRESHOLD: f64 = 1e-8;
 
-/// One joint-space row (or column) per task row of a level.
-pub type LevelRows<T> = Vec<JointVector<T>, MAX_ROWS>;
-
 /// R and Q of the whitened task rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Hierarchy<T: Real> {
-    count: usize,
-    level_start: [usize; MAX_ROWS],
+    pub(super) count: usize,
+    pub(super) level_start: [usize; MAX_ROWS],
     /// Row k holds R_k0 .. R_k(k-1), and from entry k on the reflector v_k:
-    /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T. Zeros behind the last row.
-    factors: [JointVector<T>; MAX_ROWS],
+    /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T. Behind the last row the arrays
+    /// have no meaning.
+    pub(super) factors: [JointVector<T>; MAX_ROWS],
     scale: [T; MAX_ROWS],
     /// R_kk.
-    pivot: [T; MAX_ROWS],
+    pub(super) pivot: [T; MAX_ROWS],
     /// 1 / R_kk, 0 where the row is rank deficient.
     inverse_pivot: [T; MAX_ROWS],
-    deficient: Flags,
+    deficient: IndexSet,
 }
 
 impl<T: Real> Hierarchy<T> {
-    /// Factors J L^-T. With [`Cholesky::identity`] it factors J itself, which
-    /// gives the unweighted (Moore-Penrose) hierarchy.
+    /// Nothing factored yet.
     #[must_use]
-    #[inline]
-    pub fn new(rows: &TaskRows<T>, cholesky: &Cholesky<T>) -> Self {
-        let mut jacobian = rows.jacobian.iter();
-        let mut h = Self {
-            count: rows.jacobian.len(),
-            level_start: rows.level_start,
-            factors: core::array::from_fn(|_| match jacobian.next() {
-                Some(row) => cholesky.solve_lower(row),
-                None => zeros(),
-            }),
+    pub const fn new() -> Self {
+        Self {
+            count: 0,
+            level_start: [0; MAX_ROWS],
+            factors: [zeros(); MAX_ROWS],
             scale: [T::ZERO; MAX_ROWS],
             pivot: [T::ZERO; MAX_ROWS],
             inverse_pivot: [T::ZERO; MAX_ROWS],
-            deficient: Flags::NONE,
-        };
-        let count = h.count.min(MAX_ROWS);
+            deficient: IndexSet::NONE,
+        }
+    }
+
+    /// Factors J L^-T. With [`Cholesky::identity`] it factors J itself, which
+    /// gives the unweighted (Moore-Penrose) hierarchy.
+    #[inline]
+    pub fn update(&mut self, rows: &TaskRows<T>, cholesky: &Cholesky<T>) {
+        let count = rows.count();
+        self.count = count;
+        self.level_start = rows.level_start;
+        self.deficient = IndexSet::NONE;
+        for (factor, row) in self.factors.iter_mut().zip(&rows.jacobian).take(count) {
+            *factor = cholesky.solve_lower(row);
+        }
         for_each_joint!(k, {
             if k < count {
-                h.eliminate::<k>();
+                self.eliminate::<k>();
                 for row in k + 1..count {
-                    let mut below = h.factors[row];
-                    h.reflect::<k>(&mut below);
-                    h.factors[row] = below;
+                    let mut below = self.factors[row];
+                    self.reflect::<k>(&mut below);
+                    self.factors[row] = below;
                 }
             }
         });
-        h
     }
 
     /// The reflection that leaves row `K` zero behind entry `K`.
@@ -111,7 +111,7 @@ impl<T: Real> Hierarchy<T> {
         let inverse_pivot = one / if resolvable { pivot } else { one };
         self.scale[K] = if turns { inverse_scale } else { T::ZERO };
         self.inverse_pivot[K] = if resolvable { inverse_pivot } else { T::ZERO };
-        self.deficient.set_if(K, !resolvable);
+        self.deficient.insert_if(K, !resolvable);
     }
 
     /// Applies H_K, which leaves entries before `K` as they are.
@@ -128,15 +128,6 @@ impl<T: Real> Hierarchy<T> {
         }
     }
 
-    /// R_kj, zero for j > k.
-    fn r(&self, k: usize, j: usize) -> T {
-        match j.cmp(&k) {
-            Ordering::Less => self.factors[k][j],
-            Ordering::Equal => self.pivot[k],
-            Ordering::Greater => T::ZERO,
-        }
-    }
-
     /// Number of task rows m.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -145,7 +136,7 @@ impl<T: Real> Hierarchy<T> {
 
     /// Rows that are not resolvable given the rows above them.
     #[must_use]
-    pub fn deficient(&self) -> Flags {
+    pub fn deficient(&self) -> IndexSet {
         self.deficient
     }
 
@@ -155,7 +146,9 @@ impl<T: Real> Hierarchy<T> {
     pub fn conditioning(&self) -> [T; MAX_ROWS] {
         let mut diagonal = [T::ZERO; MAX_ROWS];
         for k in 0..MAX_ROWS {
-            diagonal[k] = self.pivot[k].magnitude();
+            if k < self.count {
+                diagonal[k] = self.pivot[k].magnitude();
+            }
         }
         diagonal
     }
@@ -238,13 +231,15 @@ impl<T: Real> Hierarchy<T> {
     pub fn solve_uncoupled(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
         for k in 0..MAX_ROWS {
-            let mut known = T::ZERO;
-            for j in 0..k {
-                if j >= self.level_start[k] {
-                    known += self.factors[k][j] * y[j];
+            if k < self.count {
+                let mut known = T::ZERO;
+                for j in 0..k {
+                    if j >= self.level_start[k] {
+                        known += self.factors[k][j] * y[j];
+                    }
                 }
+                y[k] = (b[k] - known) * self.inverse_pivot[k];
             }
-            y[k] = (b[k] - known) * self.inverse_pivot[k];
         }
         y
     }
@@ -268,116 +263,8 @@ impl<T: Real> Hierarchy<T> {
     }
 }
 
-/// Views: the paper's matrices, for inspection and tests. Not in the cycle.
-impl<T: Real> Hierarchy<T> {
-    /// Row k of Q.
-    fn q_row(&self, k: usize) -> JointVector<T> {
-        let mut unit: JointVector<T> = zeros();
-        unit[k] = T::ONE;
-        self.rotate_back(&unit)
-    }
-
-    /// Number of levels.
-    #[must_use]
-    pub fn levels(&self) -> usize {
-        (0..self.count)
-            .filter(|&k| self.level_start[k] == k)
-            .count()
-    }
-
-    /// Rows `start..end` of level `level`, counted from 0; empty beyond the last.
-    #[must_use]
-    pub fn level_range(&self, level: usize) -> core::ops::Range<usize> {
-        let mut starts = (0..self.count)
-            .filter(|&k| self.level_start[k] == k)
-            .skip(level);
-        let start = starts.next().unwrap_or(self.count);
-        start..starts.next().unwrap_or(self.count)
-    }
-
-    /// Jbar_i, m_i rows: dx of level i in the motion that levels above allow.
-    #[must_use]
-    pub fn jbar(&self, level: usize, cholesky: &Cholesky<T>) -> LevelRows<T> {
-        let range = self.level_range(level);
-        let row = |k: usize| {
-            range.clone().fold(zeros(), |sum: JointVector<T>, j| {
-                sum + cholesky.lower_times(&self.q_row(j)) * self.r(k, j)
-            })
-        };
-        range.clone().map(row).collect()
-    }
-
-    /// Columns of Jbar_i^#, the dynamically consistent inverse, m_i of them.
-    #[must_use]
-    pub fn jbar_pinv(&self, level: usize, cholesky: &Cholesky<T>) -> LevelRows<T> {
-        let range = self.level_range(level);
-        let column = |k: usize| {
-            let mut unit = [T::ZERO; MAX_ROWS];
-            unit[k] = T::ONE;
-            // R^-1 of a unit vector, cut to the level: the column of R_ii^-1.
-            let solved = self.solve(&unit);
-            let whitened = range.clone().fold(zeros(), |sum: JointVector<T>, j| {
-                sum + self.q_row(j) * solved[j]
-            });
-            cholesky.solve_upper(&whitened)
-        };
-        range.clone().map(column).collect()
-    }
-
-    /// Lambda_i = (Jbar_i M^-1 Jbar_i^T)^-1 \[kg\], the inertia of level i: entry
-    /// (j, k) at `[j][k]`, m_i x m_i, zeros behind.
-    #[must_use]
-    pub fn task_inertia(&self, level: usize) -> JointMatrix<T> {
-        let range = self.level_range(level);
-        let inverse = |k: usize| {
-            let mut unit = [T::ZERO; MAX_ROWS];
-            unit[k] = T::ONE;
-            let mut column = self.solve(&unit);
-            for (j, value) in column.iter_mut().enumerate() {
-                if j >= range.end {
-                    *value = T::ZERO;
-                }
-            }
-            column
-        };
-        let mut lambda = zeros();
-        for j in range.clone() {
-            for k in range.clone() {
-                lambda[(j - range.start, k - range.start)] = inverse(j).dot(&inverse(k));
-            }
-        }
-        lambda
-    }
-
-    /// Z, 7 - m rows: one basis of the null space with Z M Z^T = 1.
-    #[must_use]
-    pub fn null_basis(&self, cholesky: &Cholesky<T>) -> LevelRows<T> {
-        (self.count..DOF)
-            .map(|k| cholesky.solve_upper(&self.q_row(k)))
-            .collect()
-    }
-
-    /// v = Z M dq, the 7 - m null-space velocities that belong to
-    /// [`Hierarchy::null_basis`].
-    #[must_use]
-    pub fn null_velocity(&self, cholesky: &Cholesky<T>, dq: &JointVector<T>) -> Vec<T, DOF> {
-        self.rotate(&cholesky.upper_times(dq))
-            .iter()
-            .skip(self.count)
-            .copied()
-            .collect()
-    }
-
-    /// N = L^-T Q_n^T Q_n L^T, the null-space projector of velocities.
-    #[must_use]
-    pub fn null_projector(&self, cholesky: &Cholesky<T>) -> JointMatrix<T> {
-        let mut projector: JointMatrix<T> = zeros();
-        for j in 0..DOF {
-            let mut unit: JointVector<T> = zeros();
-            unit[j] = T::ONE;
-            let inside = self.null_part(&self.rotate(&cholesky.upper_times(&unit)));
-            projector.set_column(j, &cholesky.solve_upper(&self.rotate_back(&inside)));
-        }
-        projector
+impl<T: Real> Default for Hierarchy<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }

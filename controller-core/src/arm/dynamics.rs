@@ -9,12 +9,13 @@
 //! J_p^T J_p dm and the integral of J_p^T dJ_p/dt dm is the Christoffel form of
 //! C: dM/dt = C + C^T holds without any further choice.
 
+use crate::arm::kinematics::Kinematics;
+use crate::arm::model::ArmModel;
+use crate::arm::moments::{AxisRate, JointWrench, Moments, Motion};
+use crate::arm::transform::JointTransform;
 use crate::joint::{DOF, JointMatrix, JointState, JointVector, zeros};
-use crate::kinematics::Kinematics;
 use crate::linalg::Cholesky;
-use crate::model::ArmModel;
 use crate::real::Real;
-use crate::spatial::{AxisRate, JointWrench, Moments, Motion, Way};
 
 /// Everything of the equation of motion (6) that depends on q and dq.
 #[derive(Clone, Copy, Debug)]
@@ -36,55 +37,45 @@ pub struct Dynamics<T: Real> {
 impl<T: Real> Dynamics<T> {
     /// Nothing computed yet.
     #[must_use]
-    #[inline]
-    pub const fn empty() -> Self {
+    pub const fn new() -> Self {
         Self {
             mass_matrix: zeros(),
             coriolis_matrix: zeros(),
             coriolis: zeros(),
             gravity: zeros(),
             momentum: zeros(),
-            cholesky: Cholesky::empty(),
+            cholesky: Cholesky::new(),
         }
     }
 
     /// One pass from flange to base.
-    #[must_use]
-    #[inline]
-    pub fn new(model: &ArmModel<T>, kinematics: &Kinematics<T>, state: &JointState<T>) -> Self {
-        let mut dynamics = Self::empty();
-        dynamics.update(model, kinematics, state);
-        dynamics
-    }
-
-    /// As [`Dynamics::new`], without a copy of the whole.
     #[inline]
     pub fn update(
         &mut self,
-        model: &ArmModel<T>,
+        arm: &ArmModel<T>,
         kinematics: &Kinematics<T>,
-        state: &JointState<T>,
+        joints: &JointState<T>,
     ) {
         // From the frame of joint i to that of joint i - 1; before joint 1 lies the
         // base, whose link 0 has no length and no twist.
-        let way = |i: usize| Way {
+        let transform = |i: usize| JointTransform {
             sine: kinematics.sine[i],
             cosine: kinematics.cosine[i],
             link: if i == 0 {
-                &model.base
+                &arm.base
             } else {
-                &model.links[i - 1]
+                &arm.links[i - 1]
             },
         };
         let base = Motion {
             spin: [T::ZERO; 3],
             velocity: [T::ZERO; 3],
-            gravity: model.gravity.into(),
+            gravity: arm.gravity.into(),
         };
         let mut motion = [base; DOF];
         let mut last = base;
         for i in 0..DOF {
-            last = last.outward(&way(i), state.dq[i]);
+            last = last.to_child(&transform(i), joints.dq[i]);
             motion[i] = last;
         }
 
@@ -97,9 +88,9 @@ impl<T: Real> Dynamics<T> {
         let mut group = Moments::zero();
         for i in (0..DOF).rev() {
             if i < DOF - 1 {
-                group = group.inward(&way(i + 1));
+                group = group.to_parent(&transform(i + 1));
             }
-            group.add_link(&model.links[i], &motion[i]);
+            group.add_link(&arm.links[i], &motion[i]);
             let [gx, gy, _] = motion[i].gravity;
             gravity[i] = gx * group.first[1] - gy * group.first[0];
 
@@ -107,7 +98,7 @@ impl<T: Real> Dynamics<T> {
             mass_matrix[(i, i)] = wrench.rows[2][0];
             coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
-                wrench = wrench.inward(&way(j + 1));
+                wrench = wrench.to_parent(&transform(j + 1));
                 let [x, y, z] = &wrench.rows;
                 let AxisRate {
                     turn: [a, b],
@@ -122,8 +113,8 @@ impl<T: Real> Dynamics<T> {
         }
 
         self.cholesky.update(&self.mass_matrix);
-        self.momentum = self.mass_matrix * state.dq;
-        self.coriolis = self.coriolis_matrix * state.dq;
+        self.momentum = self.mass_matrix * joints.dq;
+        self.coriolis = self.coriolis_matrix * joints.dq;
     }
 
     /// C^T x \[Nm for x in rad/s\].
@@ -131,5 +122,11 @@ impl<T: Real> Dynamics<T> {
     #[inline]
     pub fn coriolis_transpose_times(&self, x: &JointVector<T>) -> JointVector<T> {
         self.coriolis_matrix.tr_mul(x)
+    }
+}
+
+impl<T: Real> Default for Dynamics<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }

@@ -1,90 +1,13 @@
 //! Rigid-body sums in joint axes: what the dynamics carries from joint to joint.
 //!
-//! The *joint frame* i has its origin at that of DH frame i and its z axis along
-//! joint i + 1, and turns with the link behind that joint. There a joint's own
-//! axis is (0, 0, 1), so that most products with it are only a choice of entries.
-//! From joint frame i + 1 to joint frame i leads the angle of that joint, about z,
-//! then the twist of the link between, about x, then the way between the origins,
-//! (a, 0, d). Right angles of twist only exchange axes; a sum about one point of
-//! the arm never contains the lever to another one.
+//! All quantities are in the axes of a joint frame ([`super::transform`]). Right
+//! angles of twist only exchange axes; a sum about one point of the arm never
+//! contains the lever to another one.
 
-use core::ops::{Add, Mul, Neg, Sub};
-
+use crate::arm::model::LinkModel;
+use crate::arm::transform::{AxisExchange, JointTransform, by_exchange};
 use crate::joint::Lanes;
-use crate::model::{Link, Twist};
 use crate::real::Real;
-
-/// What turns as a coordinate does: a number, or a column of a matrix.
-pub(crate) trait Entry<T>:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
-{
-}
-impl<T, E> Entry<T> for E where
-    E: Copy + Add<Output = E> + Sub<Output = E> + Neg<Output = E> + Mul<T, Output = E>
-{
-}
-
-/// Rotation about z by the angle whose sine and cosine are given.
-#[inline(always)]
-fn swing<T: Copy, E: Entry<T>>([x, y, z]: [E; 3], sine: T, cosine: T) -> [E; 3] {
-    [x * cosine - y * sine, x * sine + y * cosine, z]
-}
-
-/// Rotation about x by the twist of `link`, whose kind is `TWIST`.
-#[inline(always)]
-fn turn<T: Real, E: Entry<T>, const TWIST: u8>([x, y, z]: [E; 3], link: &Link<T>) -> [E; 3] {
-    match TWIST {
-        Twist::NONE => [x, y, z],
-        Twist::RIGHT => [x, -z, y],
-        Twist::LEFT => [x, z, -y],
-        _ => {
-            let (sine, cosine) = (link.sin_alpha, link.cos_alpha);
-            [x, y * cosine - z * sine, y * sine + z * cosine]
-        }
-    }
-}
-
-/// The way from one joint frame to the next one towards the base.
-#[derive(Clone, Copy)]
-pub(crate) struct Way<'a, T: Real> {
-    /// Sine and cosine of the outer joint's angle.
-    pub sine: T,
-    pub cosine: T,
-    /// The link between the joints.
-    pub link: &'a Link<T>,
-}
-
-/// Calls a function with the kind of twist of a way's link as constant, so that one
-/// branch serves all that is carried.
-macro_rules! by_twist {
-    ($object:expr, $function:ident, $way:expr) => {
-        match $way.link.twist.0 {
-            Twist::NONE => $object.$function::<{ Twist::NONE }>($way),
-            Twist::RIGHT => $object.$function::<{ Twist::RIGHT }>($way),
-            Twist::LEFT => $object.$function::<{ Twist::LEFT }>($way),
-            _ => $object.$function::<{ Twist::OTHER }>($way),
-        }
-    };
-}
-
-impl<T: Real> Way<'_, T> {
-    #[inline(always)]
-    fn inward<E: Entry<T>, const TWIST: u8>(&self, v: [E; 3]) -> [E; 3] {
-        turn::<T, E, TWIST>(swing(v, self.sine, self.cosine), self.link)
-    }
-
-    #[inline(always)]
-    fn outward<const TWIST: u8>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
-        let (sine, cosine) = (self.link.sin_alpha, self.link.cos_alpha);
-        let back = match TWIST {
-            Twist::NONE => [x, y, z],
-            Twist::RIGHT => [x, z, -y],
-            Twist::LEFT => [x, -z, y],
-            _ => [x, y * cosine + z * sine, z * cosine - y * sine],
-        };
-        swing(back, -self.sine, self.cosine)
-    }
-}
 
 /// Velocities and gravity in joint axes.
 #[derive(Clone, Copy)]
@@ -98,28 +21,28 @@ pub(crate) struct Motion<T: Real> {
 }
 
 impl<T: Real> Motion<T> {
-    /// The same in the next joint frame outwards, whose joint turns at `speed`.
+    /// The same in the child's joint frame, whose joint turns at `speed` \[rad/s\].
     #[inline(always)]
-    pub fn outward(&self, way: &Way<'_, T>, speed: T) -> Self {
-        let mut next = by_twist!(self, carried, way);
+    pub fn to_child(&self, transform: &JointTransform<'_, T>, speed: T) -> Self {
+        let mut next = by_exchange!(self, carried, transform);
         next.spin[2] += speed;
         next
     }
 
     #[inline(always)]
-    fn carried<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
-        let Link { a, d, .. } = *way.link;
+    fn carried<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
+        let LinkModel { a, d, .. } = *transform.link;
         let [wx, wy, wz] = self.spin;
         let [vx, vy, vz] = self.velocity;
         let mut velocity = [vx + wy * d, vy - wx * d, vz];
-        if TWIST == Twist::OTHER {
+        if EXCHANGE == AxisExchange::OTHER {
             velocity[1] += wz * a;
             velocity[2] -= wy * a;
         }
         Self {
-            spin: way.outward::<TWIST>(self.spin),
-            velocity: way.outward::<TWIST>(velocity),
-            gravity: way.outward::<TWIST>(self.gravity),
+            spin: transform.to_child::<EXCHANGE>(self.spin),
+            velocity: transform.to_child::<EXCHANGE>(velocity),
+            gravity: transform.to_child::<EXCHANGE>(self.gravity),
         }
     }
 }
@@ -144,15 +67,15 @@ pub(crate) struct Symmetric<T: Real> {
 /// | `mass` | dm | kg |
 /// | `first` h | p dm | kg m |
 /// | `second` S | p p^T dm | kg m2 |
-/// | `flow` \[D l\] | dp (p, 1)^T dm, by rows | kg m2/s, kg m/s |
+/// | `velocity_moment` \[D l\] | dp (p, 1)^T dm, by rows | kg m2/s, kg m/s |
 ///
-/// All add over links. Column l of `flow` is the momentum.
+/// All add over links. Column l of `velocity_moment` is the momentum.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments<T: Real> {
     pub mass: T,
     pub first: [T; 3],
     pub second: Symmetric<T>,
-    pub flow: [Lanes<T>; 3],
+    pub velocity_moment: [Lanes<T>; 3],
 }
 
 impl<T: Real> Moments<T> {
@@ -169,19 +92,19 @@ impl<T: Real> Moments<T> {
                 yz: zero,
                 zz: zero,
             },
-            flow: [Lanes::from([zero; 4]); 3],
+            velocity_moment: [Lanes::from([zero; 4]); 3],
         }
     }
 
     /// Adds one link, whose elements move with dp = v + omega x p.
     #[inline(always)]
-    pub fn add_link(&mut self, link: &Link<T>, motion: &Motion<T>) {
+    pub fn add_link(&mut self, link: &LinkModel<T>, motion: &Motion<T>) {
         let [x, y, z, one] = &link.moments;
         let [wx, wy, wz] = motion.spin;
         let [vx, vy, vz] = motion.velocity;
-        self.flow[0] += one * vx + (z * wy - y * wz);
-        self.flow[1] += one * vy + (x * wz - z * wx);
-        self.flow[2] += one * vz + (y * wx - x * wy);
+        self.velocity_moment[0] += one * vx + (z * wy - y * wz);
+        self.velocity_moment[1] += one * vy + (x * wz - z * wx);
+        self.velocity_moment[2] += one * vz + (y * wx - x * wy);
         self.mass += one[3];
         self.first[0] += one[0];
         self.first[1] += one[1];
@@ -195,31 +118,31 @@ impl<T: Real> Moments<T> {
         s.zz += z[2];
     }
 
-    /// The same about the next joint frame inwards, in its axes.
+    /// The same about the origin of the parent's joint frame, in its axes.
     #[inline(always)]
-    pub fn inward(&self, way: &Way<'_, T>) -> Self {
-        by_twist!(self, carried, way)
+    pub fn to_parent(&self, transform: &JointTransform<'_, T>) -> Self {
+        by_exchange!(self, carried, transform)
     }
 
     #[inline(always)]
-    fn carried<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
+    fn carried<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
         // Rows turn with dp, entries within a row with p.
-        let turned = way.inward::<Lanes<T>, TWIST>(self.flow);
+        let turned = transform.to_parent::<Lanes<T>, EXCHANGE>(self.velocity_moment);
         let row = |row: Lanes<T>| {
-            let [x, y, z] = way.inward::<T, TWIST>([row[0], row[1], row[2]]);
+            let [x, y, z] = transform.to_parent::<T, EXCHANGE>([row[0], row[1], row[2]]);
             Lanes::from([x, y, z, row[3]])
         };
         let mut moved = Self {
             mass: self.mass,
-            first: way.inward::<T, TWIST>(self.first),
-            second: self.second.inward::<TWIST>(way),
-            flow: turned.map(row),
+            first: transform.to_parent::<T, EXCHANGE>(self.first),
+            second: self.second.to_parent::<EXCHANGE>(transform),
+            velocity_moment: turned.map(row),
         };
-        let Link { a, d, .. } = *way.link;
+        let LinkModel { a, d, .. } = *transform.link;
         if d != T::ZERO {
             moved.shift_along_z(d);
         }
-        if TWIST == Twist::OTHER {
+        if EXCHANGE == AxisExchange::OTHER {
             moved.shift_along_x(a);
         }
         moved
@@ -234,7 +157,7 @@ impl<T: Real> Moments<T> {
         self.second.yz += hy * d;
         self.second.zz += (hz + hz + md) * d;
         self.first[2] += md;
-        for row in &mut self.flow {
+        for row in &mut self.velocity_moment {
             row[2] = row[2] + row[3] * d;
         }
     }
@@ -248,7 +171,7 @@ impl<T: Real> Moments<T> {
         self.second.xy += hy * a;
         self.second.xz += hz * a;
         self.first[0] += ma;
-        for row in &mut self.flow {
+        for row in &mut self.velocity_moment {
             row[0] = row[0] + row[3] * a;
         }
     }
@@ -256,12 +179,12 @@ impl<T: Real> Moments<T> {
 
 impl<T: Real> Symmetric<T> {
     #[inline(always)]
-    fn inward<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
-        let (sine, cosine) = (way.sine, way.cosine);
+    fn to_parent<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
+        let (sine, cosine) = (transform.sine, transform.cosine);
         let x = self.xx * cosine - self.xy * sine;
         let y = self.xy * cosine - self.yy * sine;
         let xx = x * cosine - y * sine;
-        let swung = Self {
+        let rotated = Self {
             xx,
             xy: x * sine + y * cosine,
             xz: self.xz * cosine - self.yz * sine,
@@ -270,11 +193,11 @@ impl<T: Real> Symmetric<T> {
             yz: self.xz * sine + self.yz * cosine,
             zz: self.zz,
         };
-        swung.turn::<TWIST>(way.link)
+        rotated.exchanged::<EXCHANGE>(transform.link)
     }
 
     #[inline(always)]
-    fn turn<const TWIST: u8>(self, link: &Link<T>) -> Self {
+    fn exchanged<const EXCHANGE: u8>(self, link: &LinkModel<T>) -> Self {
         let Self {
             xx,
             xy,
@@ -283,9 +206,9 @@ impl<T: Real> Symmetric<T> {
             yz,
             zz,
         } = self;
-        match TWIST {
-            Twist::NONE => self,
-            Twist::RIGHT => Self {
+        match EXCHANGE {
+            AxisExchange::NONE => self,
+            AxisExchange::RIGHT => Self {
                 xx,
                 xy: -xz,
                 xz: xy,
@@ -293,7 +216,7 @@ impl<T: Real> Symmetric<T> {
                 yz: -yz,
                 zz: yy,
             },
-            Twist::LEFT => Self {
+            AxisExchange::LEFT => Self {
                 xx,
                 xy: xz,
                 xz: -xy,
@@ -355,7 +278,7 @@ impl<T: Real> JointWrench<T> {
     pub fn new(group: &Moments<T>, rate: &AxisRate<T>) -> Self {
         let s = &group.second;
         let [hx, hy, hz] = group.first;
-        let [dx, dy, dz] = &group.flow;
+        let [dx, dy, dz] = &group.velocity_moment;
         let [a, b] = rate.turn;
         let [u, v] = rate.slide;
         let trace = dx[0] + dy[1];
@@ -384,24 +307,24 @@ impl<T: Real> JointWrench<T> {
         }
     }
 
-    /// The same about the next joint frame inwards, in its axes.
+    /// The same about the origin of the parent's joint frame, in its axes.
     #[inline(always)]
-    pub fn inward(&self, way: &Way<'_, T>) -> Self {
-        by_twist!(self, carried, way)
+    pub fn to_parent(&self, transform: &JointTransform<'_, T>) -> Self {
+        by_exchange!(self, carried, transform)
     }
 
     #[inline(always)]
-    fn carried<const TWIST: u8>(&self, way: &Way<'_, T>) -> Self {
-        let mut rows = way.inward::<Lanes<T>, TWIST>(self.rows);
+    fn carried<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
+        let mut rows = transform.to_parent::<Lanes<T>, EXCHANGE>(self.rows);
         // The forces act at (a, 0, d).
-        let Link { a, d, .. } = *way.link;
+        let LinkModel { a, d, .. } = *transform.link;
         if d != T::ZERO {
             for (moment, force) in [(0, 2), (1, 3)] {
                 rows[0][moment] = rows[0][moment] - rows[1][force] * d;
                 rows[1][moment] = rows[1][moment] + rows[0][force] * d;
             }
         }
-        if TWIST == Twist::OTHER {
+        if EXCHANGE == AxisExchange::OTHER {
             for (moment, force) in [(0, 2), (1, 3)] {
                 rows[1][moment] = rows[1][moment] - rows[2][force] * a;
                 rows[2][moment] = rows[2][moment] + rows[1][force] * a;
@@ -409,7 +332,7 @@ impl<T: Real> JointWrench<T> {
         }
         Self {
             rows,
-            transposed_rate: way.inward::<T, TWIST>(self.transposed_rate),
+            transposed_rate: transform.to_parent::<T, EXCHANGE>(self.transposed_rate),
         }
     }
 }

@@ -1,0 +1,22 @@
+//! The arm: parameter tables as constants, the validated model that the algorithms
+//! read, its kinematics and its dynamics.
+//!
+//! Conventions. Frames follow the standard Denavit-Hartenberg table: frame i
+//! moves with link i, axis z of frame i - 1 is the axis of joint i, frame 0 is
+//! fixed at `base_height` above the mounting plate. Positions are expressed in
+//! the base-plate frame, z up.
+
+pub mod dynamics;
+pub mod kinematics;
+mod link;
+mod lwr_iv;
+mod model;
+mod moments;
+mod parameters;
+mod transform;
+
+pub use link::{Link, LinkPoint, NamedPoint};
+pub use lwr_iv::{LWR_IV, LWR_IV_FLANGE, LWR_IV_POINTS};
+pub use model::ArmModel;
+pub(crate) use model::LinkModel;
+pub use parameters::{ArmError, ArmParameters, LinkParameters};

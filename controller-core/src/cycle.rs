@@ -1,0 +1,16 @@
+//! The cycle: what enters it and when it is believed, its stages as one list, every
+//! result as data, what comes out.
+
+pub mod config;
+mod controller;
+mod data;
+mod delay;
+pub mod measurement;
+pub mod observer;
+pub mod record;
+pub mod stages;
+mod usable;
+pub mod velocity;
+
+pub use controller::{Controller, Step};
+pub use data::{Data, Input, State};

@@ -1,0 +1,88 @@
+//! What a controller is made of, and its validation.
+
+use crate::arm::ArmModel;
+use crate::error::ConfigError;
+use crate::joint::DOF;
+use crate::law::null_space::{NullDamping, NullSpace, matrix};
+use crate::law::sampling::{self, DampingRate};
+use crate::ranges::{CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, INERTIA_DAMPING_BOUND};
+use crate::real::Real;
+use crate::task::TaskSet;
+
+/// What a controller is made of, besides the arm. Plain `f64` data, usable as a
+/// constant but for the tasks, which are checked when the set is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControllerConfig {
+    /// The tasks in priority order.
+    pub tasks: TaskSet,
+    /// Compliance of what the tasks leave.
+    pub null_space: NullSpace,
+    /// K_I \[1/s\] per joint, diagonal: bandwidth of the external-torque estimate.
+    pub observer_gain: [f64; DOF],
+    /// Nominal cycle \[s\].
+    pub cycle_s: f64,
+    /// Cycles between a measurement and the moment its torque acts, beyond the
+    /// zero-order hold: 0 for a direct link. Lowers the damping that is allowed,
+    /// see [`sampling::bound`].
+    pub dead_cycles: u8,
+}
+
+impl ControllerConfig {
+    /// Checks everything and returns the fastest null-space mode.
+    ///
+    /// # Errors
+    /// The first thing that cannot be, with its value and what is allowed.
+    pub fn validate<T: Real>(&self, arm: &ArmModel<T>) -> Result<DampingRate, ConfigError> {
+        let [min, max] = CYCLE_RANGE_S;
+        if !(self.cycle_s >= min && self.cycle_s <= max) {
+            let value = self.cycle_s;
+            return Err(ConfigError::Cycle { value });
+        }
+        for (joint, &value) in (1..).zip(&self.observer_gain) {
+            if !(value > 0.0 && value <= GAIN_MAX) {
+                return Err(ConfigError::ObserverGain { joint, value });
+            }
+        }
+        self.null_space.validate()?;
+        if self.dead_cycles > DEAD_CYCLES_MAX {
+            return Err(ConfigError::DeadCycles {
+                value: self.dead_cycles,
+            });
+        }
+        self.validate_damping(arm)
+    }
+
+    /// What h lambda must stay below. An inertia-shaped damping is held to half
+    /// a cycle's decay: it is the same everywhere and never needs more.
+    #[must_use]
+    pub fn damping_bound(&self) -> f64 {
+        let stable = sampling::bound(self.dead_cycles);
+        match self.null_space.damping {
+            NullDamping::Joint(_) => stable,
+            NullDamping::Inertia(_) => stable.min(INERTIA_DAMPING_BOUND),
+        }
+    }
+
+    fn validate_damping<T: Real>(&self, arm: &ArmModel<T>) -> Result<DampingRate, ConfigError> {
+        let fastest = match &self.null_space.damping {
+            NullDamping::Joint(damping) => sampling::fastest_mode(arm, &matrix(damping)),
+            NullDamping::Inertia(rate) => DampingRate {
+                rate: *rate,
+                joint: 1,
+                posture: [0.0; DOF],
+            },
+        };
+        let value = fastest.rate * self.cycle_s;
+        let bound = self.damping_bound();
+        if value < bound {
+            return Ok(fastest);
+        }
+        let DampingRate { joint, posture, .. } = fastest;
+        Err(ConfigError::Damping {
+            joint,
+            value,
+            bound,
+            posture,
+        })
+    }
+}

@@ -1,0 +1,261 @@
+//! One control cycle, from measurement to torque.
+
+use super::config::ControllerConfig;
+use super::data::{Data, Input, State};
+use super::measurement::{Measurement, believe};
+use super::stages::{StageName, torque_demand};
+use super::usable::usable;
+use crate::arm::kinematics::Kinematics;
+use crate::arm::{ArmModel, ArmParameters};
+use crate::error::ConfigError;
+use crate::fault::{Fault, Status};
+use crate::joint::{JointState, JointVector, zeros};
+use crate::law::null_space::Compliance;
+use crate::law::sampling::DampingRate;
+use crate::real::Real;
+use crate::task::{Levels, Reference, Target};
+
+/// The immutable part: arm, tasks, gains and limits, validated once and converted to
+/// the precision of the cycle. One controller can drive any number of [`State`]s.
+#[derive(Clone, Debug)]
+pub struct Controller<T: Real> {
+    pub(super) arm: ArmModel<T>,
+    pub(super) levels: Levels<T>,
+    pub(super) compliance: Compliance<T>,
+    pub(super) observer_gain: JointVector<T>,
+    cycle_s: T,
+    pub(super) dead_cycles: u8,
+    fastest_mode: DampingRate,
+}
+
+/// The result of one cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<T: Real> {
+    /// Joint torque to apply until the next cycle \[Nm\]: always finite and
+    /// within the limits of the arm.
+    pub torque: JointVector<T>,
+    /// r \[Nm\], tends to -tau_ext; zero while a fault is latched.
+    pub residual: JointVector<T>,
+    /// g(q) \[Nm\], contained in the torque: what a robot that compensates
+    /// gravity itself must not be sent. While a fault is latched the torque itself.
+    pub gravity: JointVector<T>,
+    /// C dq \[Nm\], contained in the torque; zero while a fault is latched.
+    pub coriolis: JointVector<T>,
+    /// What limited or degraded the cycle.
+    pub status: Status,
+}
+
+impl<T: Real> Controller<T> {
+    /// Validates arm and configuration and converts them to the precision `T`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that cannot be.
+    pub fn new(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        match &ArmModel::new(arm) {
+            Ok(arm) => match config.validate(arm) {
+                Ok(fastest_mode) => Ok(Self::converted(arm, config, fastest_mode)),
+                Err(error) => Err(error),
+            },
+            Err(error) => Err(ConfigError::Arm(*error)),
+        }
+    }
+
+    /// Behind a call, so that the parts are made in the place of the result and
+    /// nowhere else.
+    #[inline(never)]
+    fn converted(arm: &ArmModel<T>, config: &ControllerConfig, fastest_mode: DampingRate) -> Self {
+        Self {
+            arm: *arm,
+            levels: Levels::new(&config.tasks),
+            compliance: Compliance::new(&config.null_space),
+            observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
+            cycle_s: T::from_f64(config.cycle_s),
+            dead_cycles: config.dead_cycles,
+            fastest_mode,
+        }
+    }
+
+    /// The arm.
+    #[must_use]
+    pub fn arm(&self) -> &ArmModel<T> {
+        &self.arm
+    }
+
+    /// Number of levels: so many targets a [`Reference`] needs.
+    #[must_use]
+    pub fn level_count(&self) -> usize {
+        self.levels.as_slice().len()
+    }
+
+    /// Compliance of what the tasks leave.
+    #[must_use]
+    pub fn compliance(&self) -> &Compliance<T> {
+        &self.compliance
+    }
+
+    /// The fastest null-space mode that the damping makes anywhere.
+    #[must_use]
+    pub fn fastest_mode(&self) -> DampingRate {
+        self.fastest_mode
+    }
+
+    /// The reference that keeps the arm in the posture `q` \[rad\]: every level
+    /// at rest where it is there, q_d = q. What motions start from.
+    #[must_use]
+    pub fn rest_reference(&self, q: &JointVector<T>) -> Reference<T> {
+        let dq = zeros();
+        self.moving_reference(&JointState { q: *q, dq })
+    }
+
+    /// The reference that moves as the arm does at this instant: position and
+    /// velocity of every level, no acceleration, q_d = q.
+    #[must_use]
+    pub fn moving_reference(&self, joints: &JointState<T>) -> Reference<T> {
+        let mut data = Data::new();
+        let measurement = Measurement {
+            q: joints.q,
+            dq: joints.dq,
+            interval_s: self.cycle_s,
+        };
+        let mut reference = Reference::hold(self.level_count(), joints.q);
+        let input = Input {
+            measurement: &measurement,
+            reference: &reference,
+        };
+        self.evaluate_until(StageName::Kinematics, &input, &mut data);
+        self.set_targets(&data.kinematics, reference.targets_mut());
+        reference
+    }
+
+    /// Each level as it moves now.
+    fn set_targets(&self, kinematics: &Kinematics<T>, targets: &mut [Target<T>]) {
+        for (level, target) in self.levels.as_slice().iter().zip(targets) {
+            *target = level.tracked.target(kinematics);
+        }
+    }
+
+    /// One cycle. Never fails and never panics: with a measurement or reference
+    /// that cannot be true it latches a fault and holds the arm by the gravity
+    /// torque of the last plausible posture (zero torque if there was none).
+    #[must_use]
+    pub fn step(
+        &self,
+        state: &mut State<T>,
+        measurement: &Measurement<T>,
+        reference: &Reference<T>,
+    ) -> Step<T> {
+        self.step_with(state, measurement, reference, torque_demand)
+    }
+
+    /// One cycle with another law in the place of [`StageName::TorqueDemand`],
+    /// everything around it unchanged: `law` reads the results above it and writes
+    /// [`Data::demand`]. For experiments that compare laws on equal terms.
+    #[must_use]
+    pub fn step_with(
+        &self,
+        state: &mut State<T>,
+        measurement: &Measurement<T>,
+        reference: &Reference<T>,
+        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
+    ) -> Step<T> {
+        let admitted = match state.fault {
+            Some(fault) => Err(fault),
+            None => believe(&self.arm, self.cycle_s, measurement)
+                .and_then(|()| usable(reference, &self.levels)),
+        };
+        if let Err(fault) = admitted {
+            return state.held(fault);
+        }
+        let input = Input {
+            measurement,
+            reference,
+        };
+        self.evaluate_with(&input, &mut state.data, law);
+        match state.data.allocation.fault(&state.data.demand) {
+            None => state.answer(),
+            Some(fault) => state.held(fault),
+        }
+    }
+
+    /// All stages on an input that is taken as it is: no check, no fault. For
+    /// inspection and tests.
+    pub fn evaluate(&self, input: &Input<'_, T>, data: &mut Data<T>) {
+        self.evaluate_until(StageName::ObserverInput, input, data);
+    }
+
+    /// The same up to and including the stage `last`.
+    pub fn evaluate_until(&self, last: StageName, input: &Input<'_, T>, data: &mut Data<T>) {
+        for (name, run) in Self::STAGES {
+            if name <= last {
+                run(self, input, data);
+            }
+        }
+    }
+
+    /// The same with another law.
+    #[inline]
+    pub fn evaluate_with(
+        &self,
+        input: &Input<'_, T>,
+        data: &mut Data<T>,
+        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
+    ) {
+        for (name, run) in Self::STAGES {
+            if name < StageName::TorqueDemand {
+                run(self, input, data);
+            }
+        }
+        law(self, input, data);
+        for (name, run) in Self::STAGES {
+            if name > StageName::TorqueDemand {
+                run(self, input, data);
+            }
+        }
+    }
+}
+
+impl<T: Real> State<T> {
+    /// The results of a cycle without a fault.
+    #[inline(always)]
+    fn answer(&self) -> Step<T> {
+        let data = &self.data;
+        Step {
+            torque: data.allocation.torque,
+            residual: *data.residual(),
+            gravity: data.dynamics.gravity,
+            coriolis: data.dynamics.coriolis,
+            status: Status {
+                fault: None,
+                saturated: data.allocation.saturated,
+                rank: data.hierarchy.deficient(),
+            },
+        }
+    }
+
+    fn held(&mut self, fault: Fault) -> Step<T> {
+        self.fault = Some(fault);
+        let holding_torque = self.data.holding_torque;
+        Step {
+            torque: holding_torque,
+            residual: zeros(),
+            gravity: holding_torque,
+            coriolis: zeros(),
+            status: Status {
+                fault: Some(fault),
+                ..Status::CLEAR
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_stand_in_the_order_of_their_names() {
+        for (index, (name, _)) in Controller::<f64>::STAGES.into_iter().enumerate() {
+            assert_eq!(index, name as usize, "{}", name.text());
+        }
+    }
+}

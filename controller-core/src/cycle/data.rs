@@ -1,0 +1,171 @@
+//! Every named result of one cycle, in the order of the cycle, and what is remembered
+//! for the next one.
+
+use super::delay::Delay;
+use super::measurement::Measurement;
+use super::observer::Observer;
+use crate::arm::dynamics::Dynamics;
+use crate::arm::kinematics::Kinematics;
+use crate::fault::Fault;
+use crate::joint::{JointState, JointVector, zeros};
+use crate::law::allocation::Allocation;
+use crate::law::control::{Control, TorqueDemand};
+use crate::law::hierarchy::Hierarchy;
+use crate::law::motion::MotionSplit;
+use crate::law::null_space::PostureIntegral;
+use crate::real::Real;
+use crate::task::rows::TaskRows;
+use crate::task::{HeldPlaces, Reference};
+
+/// What comes into a cycle from outside.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a, T: Real> {
+    /// What the robot reports; believed.
+    pub measurement: &'a Measurement<T>,
+    /// What the arm should do; usable.
+    pub reference: &'a Reference<T>,
+}
+
+/// The results of a cycle, one field per stage of
+/// [`Controller::STAGES`](super::Controller::STAGES) and in its order. A stage reads the
+/// fields above its own and writes its own.
+#[derive(Clone, Debug)]
+pub struct Data<T: Real> {
+    /// q, dq as measured.
+    pub joints: JointState<T>,
+    /// Frames, axes and their rates.
+    pub kinematics: Kinematics<T>,
+    /// Equation of motion (6).
+    pub dynamics: Dynamics<T>,
+    /// Torque \[Nm\] that holds the arm if this cycle or a later one ends in a fault: g(q)
+    /// within limits.
+    pub holding_torque: JointVector<T>,
+    /// The observer (30); after its stage `observer.residual` is r of this cycle.
+    pub observer: Observer<T>,
+    /// J, dJ/dt and what the tasks command, all levels stacked.
+    pub rows: TaskRows<T>,
+    /// R and Q of J L^-T.
+    pub hierarchy: Hierarchy<T>,
+    /// Task and null-space parts of dq.
+    pub motion: MotionSplit<T>,
+    /// q_d \[rad\].
+    pub posture: JointVector<T>,
+    /// Task accelerations and null-space force.
+    pub control: Control<T>,
+    /// Torque asked for \[Nm\].
+    pub demand: TorqueDemand<T>,
+    /// Torque allowed \[Nm\].
+    pub allocation: Allocation<T>,
+    /// The torques of the last cycles.
+    pub(super) delay: Delay<T>,
+    /// q_d of an integrated posture.
+    pub(super) posture_integral: PostureIntegral<T>,
+    /// Where levels hold.
+    pub(super) held_places: HeldPlaces<T>,
+}
+
+impl<T: Real> Data<T> {
+    /// Nothing computed, nothing remembered.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            joints: JointState {
+                q: zeros(),
+                dq: zeros(),
+            },
+            kinematics: Kinematics::new(),
+            dynamics: Dynamics::new(),
+            holding_torque: zeros(),
+            observer: Observer::new(),
+            rows: TaskRows::new(),
+            hierarchy: Hierarchy::new(),
+            motion: MotionSplit::new(),
+            posture: zeros(),
+            control: Control::new(),
+            demand: TorqueDemand(zeros()),
+            allocation: Allocation::new(),
+            delay: Delay::new(),
+            posture_integral: PostureIntegral::new(),
+            held_places: HeldPlaces::new(),
+        }
+    }
+
+    /// r \[Nm\], tends to -tau_ext.
+    #[must_use]
+    #[inline(always)]
+    pub fn residual(&self) -> &JointVector<T> {
+        &self.observer.residual
+    }
+
+    /// Forgets what is remembered: observer, delay, integrated posture, held places.
+    pub(super) fn forget(&mut self) {
+        self.observer = Observer::new();
+        self.delay = Delay::new();
+        self.posture_integral = PostureIntegral::new();
+        self.held_places = HeldPlaces::new();
+    }
+}
+
+impl<T: Real> Default for Data<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The part that changes from cycle to cycle, in the caller's storage.
+/// Const-constructed, so that it can be a `static`.
+#[derive(Clone, Debug)]
+pub struct State<T: Real> {
+    pub(super) data: Data<T>,
+    pub(super) fault: Option<Fault>,
+}
+
+impl<T: Real> State<T> {
+    /// Before the first cycle: nothing observed, no fault, zero torque held.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            data: Data::new(),
+            fault: None,
+        }
+    }
+
+    /// Every result of the last cycle.
+    #[must_use]
+    pub fn data(&self) -> &Data<T> {
+        &self.data
+    }
+
+    /// The latched fault, if any.
+    #[must_use]
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
+    }
+
+    /// Tells the observer that `torque` \[Nm\] has acted on the joints since the
+    /// last cycle instead of the one it assumes: the torque of that cycle, or
+    /// with dead time of so many cycles before. For links that round, scale or
+    /// lose torques; to be called before the next cycle.
+    pub fn set_applied_torque(&mut self, torque: &JointVector<T>) {
+        self.data.observer.set_applied_torque(torque);
+    }
+
+    /// The next cycle comes after a gap that is too long to be an interval: the
+    /// observer keeps its residual and takes the momentum anew.
+    pub fn resume_after_gap(&mut self) {
+        self.data.observer.started = false;
+    }
+
+    /// Clears a latched fault. Observer, integrated posture and held places start
+    /// anew; the torque that holds the arm stays until the next cycle.
+    pub fn reset(&mut self) {
+        self.data.forget();
+        self.fault = None;
+    }
+}
+
+impl<T: Real> Default for State<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

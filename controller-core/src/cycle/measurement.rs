@@ -1,0 +1,70 @@
+//! What enters a cycle, and the check that it can be true.
+
+use crate::arm::ArmModel;
+use crate::fault::{Fault, FaultKind, Quantity};
+use crate::joint::{DOF, JointVector};
+use crate::ranges::{INTERVAL_FACTORS, POSITION_MARGIN, SPEED_FACTOR};
+use crate::real::Real;
+
+/// What the robot reports at a cycle instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement<T: Real> {
+    /// q \[rad\].
+    pub q: JointVector<T>,
+    /// dq \[rad/s\].
+    pub dq: JointVector<T>,
+    /// h: time since the previous measurement \[s\]; the nominal cycle at first.
+    pub interval_s: T,
+}
+
+/// Whether a measurement can be true.
+///
+/// # Errors
+/// The first quantity that cannot be true: a position beyond its limit by more
+/// than [`POSITION_MARGIN`], a speed above [`SPEED_FACTOR`] times the data sheet,
+/// an interval outside [`INTERVAL_FACTORS`] of `cycle_s`, anything not finite.
+pub(crate) fn believe<T: Real>(
+    arm: &ArmModel<T>,
+    cycle_s: T,
+    measurement: &Measurement<T>,
+) -> Result<(), Fault> {
+    let Measurement { q, dq, interval_s } = measurement;
+    let margin = T::from_f64(POSITION_MARGIN);
+    let factor = T::from_f64(SPEED_FACTOR);
+    let [low, high] = INTERVAL_FACTORS.map(|factor| T::from_f64(factor) * cycle_s);
+    let (positions, speeds) = (arm.position_limit(), arm.speed_limit());
+    // All at once first; which one it is matters only then. False for NaN as well.
+    let mut believed = (*interval_s >= low) & (*interval_s <= high);
+    for i in 0..DOF {
+        believed &= q[i].magnitude() <= positions[i] + margin;
+        believed &= dq[i].magnitude() <= speeds[i] * factor;
+    }
+    if believed {
+        return Ok(());
+    }
+    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(positions)) {
+        let limit = limit + margin;
+        within(Quantity::Position, index, value, -limit, limit)?;
+    }
+    for (index, (&value, &limit)) in (1..).zip(dq.iter().zip(speeds)) {
+        let limit = limit * factor;
+        within(Quantity::Speed, index, value, -limit, limit)?;
+    }
+    within(Quantity::Interval, 0, *interval_s, low, high)
+}
+
+#[inline(always)]
+pub(crate) fn within<T: Real>(quantity: Quantity, index: u8, value: T, min: T, max: T) -> Result<(), Fault> {
+    // False for NaN as well.
+    if value >= min && value <= max {
+        return Ok(());
+    }
+    Err(Fault {
+        kind: FaultKind::Implausible,
+        quantity,
+        index,
+        value: value.to_f64(),
+        min: min.to_f64(),
+        max: max.to_f64(),
+    })
+}

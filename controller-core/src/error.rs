@@ -1,0 +1,203 @@
+//! Why an arm or a configuration is refused: one type, one text per reason.
+
+use core::fmt;
+
+use crate::arm::ArmError;
+use crate::gain::Gain;
+use crate::joint::DOF;
+use crate::ranges::{
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M,
+};
+use crate::real::Real;
+
+/// Why a configuration is refused. Levels and joints count from 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The tables of the arm.
+    Arm(ArmError),
+    /// No task, or more tasks than a set holds.
+    Levels {
+        /// Tasks given.
+        levels: usize,
+    },
+    /// The tasks have more rows together than the law serves.
+    Rows {
+        /// Rows of all levels.
+        rows: usize,
+    },
+    /// A task point whose offset is not finite or beyond 10 m.
+    PointOffset {
+        /// Its level.
+        level: usize,
+        /// The coordinate \[m\].
+        value: f64,
+    },
+    /// An entry of a gain matrix is not finite, or beyond [`GAIN_MAX`].
+    GainValue {
+        /// Which matrix.
+        gain: Gain,
+        /// Level of a task gain, 0 for the null space.
+        level: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// A gain matrix is not symmetric.
+    GainSymmetry {
+        /// Which matrix.
+        gain: Gain,
+        /// Level of a task gain, 0 for the null space.
+        level: usize,
+        /// Row and column of the entry, counted from 1.
+        entry: [usize; 2],
+        /// The entry less its mirror image.
+        difference: f64,
+    },
+    /// A gain matrix is not positive definite.
+    GainDefinite {
+        /// Which matrix.
+        gain: Gain,
+        /// Level of a task gain, 0 for the null space.
+        level: usize,
+        /// Joint or axis of the first pivot that is not positive.
+        index: usize,
+        /// That pivot.
+        pivot: f64,
+    },
+    /// The observer gain of a joint is not above 0, or not finite.
+    ObserverGain {
+        /// The joint.
+        joint: usize,
+        /// Its gain \[1/s\].
+        value: f64,
+    },
+    /// The nominal cycle is outside [`CYCLE_RANGE_S`].
+    Cycle {
+        /// The cycle \[s\].
+        value: f64,
+    },
+    /// More dead time than [`DEAD_CYCLES_MAX`].
+    DeadCycles {
+        /// The cycles.
+        value: u8,
+    },
+    /// The rate of an inertia-shaped damping is not above 0, or not finite.
+    InertiaDamping {
+        /// The rate \[1/s\].
+        value: f64,
+    },
+    /// The null-space damping is too strong for the cycle.
+    Damping {
+        /// The joint that dissipates most.
+        joint: usize,
+        /// h lambda_max(L^-1 D L^-T).
+        value: f64,
+        /// What it must stay below.
+        bound: f64,
+        /// Posture \[rad\] where it occurs.
+        posture: [f64; DOF],
+    },
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |f: &mut fmt::Formatter<'_>, gain: Gain, level: usize| {
+            if level > 0 {
+                write!(f, "level {level}: ")?;
+            }
+            write!(f, "{}", gain.name())
+        };
+        match *self {
+            Self::Arm(error) => error.fmt(f),
+            Self::Levels { levels } => {
+                write!(f, "there are {levels} tasks; allowed 1 to {MAX_LEVELS}")
+            }
+            Self::Rows { rows } => {
+                write!(
+                    f,
+                    "the tasks have {rows} rows together; allowed 1 to {MAX_ROWS}"
+                )
+            }
+            Self::PointOffset { level, value } => write!(
+                f,
+                "level {level}: point offset {value} m; allowed -{POINT_OFFSET_MAX_M} to \
+                 {POINT_OFFSET_MAX_M}"
+            ),
+            Self::GainValue { gain, level, value } => {
+                place(f, gain, level)?;
+                write!(f, ": entry {value}; allowed -{GAIN_MAX:e} to {GAIN_MAX:e}")
+            }
+            Self::GainSymmetry {
+                gain,
+                level,
+                entry: [row, column],
+                difference,
+            } => {
+                place(f, gain, level)?;
+                write!(
+                    f,
+                    ": entry ({row}, {column}) differs from ({column}, {row}) by {difference}; \
+                     the matrix must be symmetric"
+                )
+            }
+            Self::GainDefinite {
+                gain,
+                level,
+                index,
+                pivot,
+            } => {
+                place(f, gain, level)?;
+                write!(
+                    f,
+                    ": pivot {pivot} at row {index}; the matrix must be positive definite \
+                     (a diagonal one: every entry above 0)"
+                )
+            }
+            Self::ObserverGain { joint, value } => write!(
+                f,
+                "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
+                 {GAIN_MAX:e}"
+            ),
+            Self::Cycle { value } => {
+                let [min, max] = CYCLE_RANGE_S;
+                write!(f, "cycle {value} s; allowed {min} to {max}")
+            }
+            Self::DeadCycles { value } => {
+                write!(
+                    f,
+                    "dead time of {value} cycles; allowed 0 to {DEAD_CYCLES_MAX}"
+                )
+            }
+            Self::InertiaDamping { value } => write!(
+                f,
+                "inertia-shaped null-space damping {value} 1/s; it must be above 0 and at most \
+                 {GAIN_MAX:e}"
+            ),
+            Self::Damping {
+                joint,
+                value,
+                bound,
+                posture,
+            } => {
+                write!(
+                    f,
+                    "null-space damping of joint {joint} is too strong for the cycle: \
+                     h lambda_max = {value:.3} at the posture"
+                )?;
+                for q in posture {
+                    write!(f, " {}", (q.to_degrees() + 0.5).floor_small() as i32)?;
+                }
+                write!(f, " deg; it must be below {bound:.3}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+impl From<ArmError> for ConfigError {
+    fn from(error: ArmError) -> Self {
+        Self::Arm(error)
+    }
+}

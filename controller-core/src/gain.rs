@@ -1,0 +1,104 @@
+//! Gain matrices as plain data, by rows, and the one check that all of them pass.
+
+use crate::error::ConfigError;
+use crate::ranges::GAIN_MAX;
+
+/// Which gain matrix an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Gain {
+    /// K_p of a task level.
+    TaskStiffness,
+    /// K_d of a task level.
+    TaskDamping,
+    /// K_q.
+    NullStiffness,
+    /// D.
+    NullDamping,
+}
+
+impl Gain {
+    /// Name and unit.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::TaskStiffness => "task stiffness [1/s2]",
+            Self::TaskDamping => "task damping [1/s]",
+            Self::NullStiffness => "null-space stiffness [Nm/rad]",
+            Self::NullDamping => "null-space damping [Nms/rad]",
+        }
+    }
+}
+
+/// A diagonal matrix by rows: the usual form of stiffness and damping.
+#[must_use]
+pub const fn diagonal<const N: usize>(values: [f64; N]) -> [[f64; N]; N] {
+    let mut matrix = [[0.0; N]; N];
+    let mut i = 0;
+    while i < N {
+        matrix[i][i] = values[i];
+        i += 1;
+    }
+    matrix
+}
+
+/// Checks that the block of `matrix` on the rows where `used` is true is finite, up to
+/// [`GAIN_MAX`], symmetric and positive definite; the rest is not read. `level` is 0
+/// for the null space.
+///
+/// # Errors
+/// The first entry, or the first pivot, that is not as it must be.
+pub(crate) fn validate<const N: usize>(
+    gain: Gain,
+    level: usize,
+    matrix: &[[f64; N]; N],
+    used: [bool; N],
+) -> Result<(), ConfigError> {
+    let mut factor = *matrix;
+    let mut scale = 0.0;
+    for i in 0..N {
+        for j in 0..N {
+            if !(used[i] && used[j]) {
+                continue;
+            }
+            let value = matrix[i][j];
+            if !(-GAIN_MAX..=GAIN_MAX).contains(&value) {
+                return Err(ConfigError::GainValue { gain, level, value });
+            }
+            let difference = value - matrix[j][i];
+            if j < i && difference != 0.0 {
+                return Err(ConfigError::GainSymmetry {
+                    gain,
+                    level,
+                    entry: [i + 1, j + 1],
+                    difference,
+                });
+            }
+            if i == j {
+                scale = f64::max(scale, value.abs());
+            }
+        }
+    }
+    // Gaussian elimination: the pivots of a positive definite matrix are positive.
+    for k in 0..N {
+        if !used[k] {
+            continue;
+        }
+        let pivot = factor[k][k];
+        if !(pivot > 1e-12 * scale) {
+            return Err(ConfigError::GainDefinite {
+                gain,
+                level,
+                index: k + 1,
+                pivot,
+            });
+        }
+        for i in k + 1..N {
+            let share = if used[i] { factor[i][k] / pivot } else { 0.0 };
+            for j in k + 1..N {
+                factor[i][j] -= share * factor[k][j];
+            }
+        }
+    }
+    Ok(())
+}

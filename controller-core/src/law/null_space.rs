@@ -1,0 +1,163 @@
+//! Compliance of what the tasks leave: stiffness, damping, posture.
+
+use crate::arm::dynamics::Dynamics;
+use crate::error::ConfigError;
+use crate::gain::{self, Gain};
+use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::ranges::GAIN_MAX;
+use crate::real::Real;
+
+/// Compliance of the null space. Plain `f64` data, usable as a constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NullSpace {
+    /// K_q \[Nm/rad\] by rows, symmetric positive definite; acts on torque.
+    pub stiffness: [[f64; DOF]; DOF],
+    /// D; acts on torque. Through K_l,d = Z D Z^T the torque does not depend on
+    /// the choice of basis.
+    pub damping: NullDamping,
+    /// Where q_d comes from.
+    pub posture: Posture,
+}
+
+/// Damping of the null space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NullDamping {
+    /// A constant D \[Nms/rad\] by rows, symmetric positive definite.
+    Joint([[f64; DOF]; DOF]),
+    /// D = c M(q) with c \[1/s\]: every null-space motion decays at the rate c, in
+    /// every posture. For loops with dead time, where a constant D that damps
+    /// the arm is too strong for the wrist.
+    Inertia(f64),
+}
+
+/// Where the posture q_d of the null space comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+pub enum Posture {
+    /// The posture of the reference.
+    #[default]
+    Constant,
+    /// The integral (51) of the task part of the motion, dq_d = w, from the
+    /// posture of the first reference. It drifts: with it the null space has no
+    /// posture of its own.
+    IntegralCoupled,
+    /// (51) as printed, dq_d = sum of Jbar_i^# dx_i, without the coupling
+    /// between moving levels.
+    IntegralUncoupled,
+}
+
+impl NullSpace {
+    /// One `stiffness` \[Nm/rad\] and constant `damping` \[Nms/rad\] per joint, constant
+    /// posture.
+    #[must_use]
+    pub const fn diagonal(stiffness: [f64; DOF], damping: [f64; DOF]) -> Self {
+        Self {
+            stiffness: gain::diagonal(stiffness),
+            damping: NullDamping::Joint(gain::diagonal(damping)),
+            posture: Posture::Constant,
+        }
+    }
+
+    /// The same with K_q times `factor`.
+    #[must_use]
+    pub fn stiffened(&self, factor: f64) -> Self {
+        Self {
+            stiffness: self.stiffness.map(|row| row.map(|entry| entry * factor)),
+            ..*self
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ConfigError> {
+        gain::validate(Gain::NullStiffness, 0, &self.stiffness, [true; DOF])?;
+        match &self.damping {
+            NullDamping::Joint(matrix) => {
+                gain::validate(Gain::NullDamping, 0, matrix, [true; DOF])
+            }
+            &NullDamping::Inertia(value) if value > 0.0 && value <= GAIN_MAX => Ok(()),
+            &NullDamping::Inertia(value) => Err(ConfigError::InertiaDamping { value }),
+        }
+    }
+}
+
+/// The compliance in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compliance<T: Real> {
+    /// K_q \[Nm/rad\].
+    pub stiffness: JointMatrix<T>,
+    /// D.
+    pub damping: Damping<T>,
+    /// Where q_d comes from.
+    pub posture: Posture,
+}
+
+/// [`NullDamping`] in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Damping<T: Real> {
+    /// D \[Nms/rad\].
+    Joint(JointMatrix<T>),
+    /// c \[1/s\] of D = c M.
+    Inertia(T),
+}
+
+impl<T: Real> Compliance<T> {
+    pub(crate) fn new(null_space: &NullSpace) -> Self {
+        Self {
+            stiffness: matrix(&null_space.stiffness),
+            damping: match &null_space.damping {
+                NullDamping::Joint(damping) => Damping::Joint(matrix(damping)),
+                NullDamping::Inertia(rate) => Damping::Inertia(T::from_f64(*rate)),
+            },
+            posture: null_space.posture,
+        }
+    }
+}
+
+impl<T: Real> Damping<T> {
+    /// D x \[Nm for x in rad/s\].
+    #[inline]
+    pub(crate) fn times(&self, dynamics: &Dynamics<T>, x: &JointVector<T>) -> JointVector<T> {
+        match self {
+            Self::Joint(damping) => damping * x,
+            Self::Inertia(rate) => dynamics.mass_matrix * x * *rate,
+        }
+    }
+}
+
+/// A joint-space matrix from its rows.
+pub(crate) fn matrix<T: Real>(rows: &[[f64; DOF]; DOF]) -> JointMatrix<T> {
+    let mut matrix = zeros();
+    for i in 0..DOF {
+        for j in 0..DOF {
+            matrix[(i, j)] = T::from_f64(rows[i][j]);
+        }
+    }
+    matrix
+}
+
+/// What an integrated posture remembers: q_d and its last rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PostureIntegral<T: Real> {
+    last: Option<(JointVector<T>, JointVector<T>)>,
+}
+
+impl<T: Real> PostureIntegral<T> {
+    pub const fn new() -> Self {
+        Self { last: None }
+    }
+
+    /// q_d \[rad\] by the trapezoidal rule over the measured interval, from `start` on.
+    #[inline]
+    pub fn advance(
+        &mut self,
+        start: &JointVector<T>,
+        rate: &JointVector<T>,
+        interval_s: T,
+    ) -> JointVector<T> {
+        let q_d = match &self.last {
+            Some((q_d, last_rate)) => q_d + (rate + last_rate) * (T::HALF * interval_s),
+            None => *start,
+        };
+        self.last = Some((q_d, *rate));
+        q_d
+    }
+}

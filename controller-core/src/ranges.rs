@@ -1,0 +1,37 @@
+//! What is allowed: the bounds of a configuration and of what is believed, declared
+//! once for validation, messages and documents.
+
+use crate::joint::DOF;
+
+/// Most task rows of all levels together that the law serves.
+pub const MAX_ROWS: usize = DOF;
+
+/// Most priority levels.
+pub const MAX_LEVELS: usize = 7;
+
+/// Nominal cycle times that make sense \[s\].
+pub const CYCLE_RANGE_S: [f64; 2] = [1e-4, 20e-3];
+
+/// Most cycles of dead time.
+pub const DEAD_CYCLES_MAX: u8 = 8;
+
+/// Largest |gain| accepted: beyond it single precision overflows in the law.
+pub const GAIN_MAX: f64 = 1e9;
+
+/// Farthest point of a task from its link's frame \[m\].
+pub const POINT_OFFSET_MAX_M: f64 = 10.0;
+
+/// Largest h c of an inertia-shaped damping D = c M.
+pub const INERTIA_DAMPING_BOUND: f64 = 0.5;
+
+/// How far beyond its limit a measured joint position is still believed \[rad\].
+pub const POSITION_MARGIN: f64 = 0.2;
+
+/// Multiple of the data-sheet speed up to which a measured speed is believed.
+pub const SPEED_FACTOR: f64 = 3.0;
+
+/// Multiples of the nominal cycle between which a measured interval is believed.
+pub const INTERVAL_FACTORS: [f64; 2] = [0.5, 20.0];
+
+/// Norms between which a desired orientation is believed to be a quaternion.
+pub const QUATERNION_NORMS: [f64; 2] = [0.5, 2.0];

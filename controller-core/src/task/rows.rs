@@ -1,0 +1,189 @@
+//! The stacked rows J, dJ/dt that all levels make together, and what they command.
+
+use super::set::{Level, LevelPoint, Levels};
+use super::target::{HeldPlaces, Target};
+use super::{Axes, orientation};
+use crate::arm::Link;
+use crate::arm::kinematics::{JacobianRows, Kinematics};
+use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
+use crate::ranges::MAX_ROWS;
+use crate::real::Real;
+
+/// The stacked rows of all levels in priority order, first level first. Behind the
+/// last row the arrays have no meaning.
+#[derive(Clone, Copy, Debug)]
+pub struct TaskRows<T: Real> {
+    count: usize,
+    /// First row of the level that row k belongs to.
+    pub level_start: [usize; MAX_ROWS],
+    /// Rows of J \[m\], of orientations \[1\].
+    pub jacobian: [JointVector<T>; MAX_ROWS],
+    /// Rows of dJ/dt \[m/s\], of orientations \[1/s\].
+    pub jacobian_dot: [JointVector<T>; MAX_ROWS],
+    /// (dJ/dt) dq \[m/s2\], or \[rad/s2\].
+    pub bias: [T; MAX_ROWS],
+    /// Commanded task acceleration, (12) without the bias:
+    /// ddx_d + K_d (dx_d - dx) + K_p x_err \[m/s2\], or \[rad/s2\].
+    pub commanded: [T; MAX_ROWS],
+    /// x_err: x_d - x \[m\], or the chord of [`orientation::chord`] \[1\].
+    pub error: [T; MAX_ROWS],
+}
+
+impl<T: Real> TaskRows<T> {
+    /// No rows yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            count: 0,
+            level_start: [0; MAX_ROWS],
+            jacobian: [zeros(); MAX_ROWS],
+            jacobian_dot: [zeros(); MAX_ROWS],
+            bias: [T::ZERO; MAX_ROWS],
+            commanded: [T::ZERO; MAX_ROWS],
+            error: [T::ZERO; MAX_ROWS],
+        }
+    }
+
+    /// Rows of all `levels` with their `targets`, level by level. A level without a
+    /// target holds; a target of another kind counts as none.
+    #[inline]
+    pub(crate) fn update(
+        &mut self,
+        levels: &Levels<T>,
+        targets: &[Target<T>],
+        held: &mut HeldPlaces<T>,
+        kinematics: &Kinematics<T>,
+        joints: &JointState<T>,
+    ) {
+        self.count = 0;
+        let mut targets = targets.iter();
+        for (index, level) in levels.as_slice().iter().enumerate() {
+            let target = targets.next().unwrap_or(&Target::Hold);
+            match &level.tracked {
+                LevelPoint::Position(link, offset) => {
+                    let motion = kinematics.point(*link, offset);
+                    let parts = match target {
+                        Target::Position { x, dx, ddx } => {
+                            held.release(index);
+                            (x - motion.x, dx - motion.dx, *ddx)
+                        }
+                        _ => {
+                            let [x, y, z] = motion.x.into();
+                            let place = held.hold(index, || [x, y, z, T::ZERO].into());
+                            let [x, y, z, _] = place.into();
+                            (Vector3::from([x, y, z]) - motion.x, -motion.dx, zeros())
+                        }
+                    };
+                    let command = Command::new(level, parts);
+                    let rows = kinematics.point_jacobian(*link, &motion);
+                    self.push(level.axes, &command, joints, &rows);
+                }
+                LevelPoint::Orientation(link) => {
+                    let command = orientation_command(level, index, *link, target, held, kinematics);
+                    let rows = kinematics.angular_jacobian(*link);
+                    self.push(level.axes, &command, joints, &rows);
+                }
+            }
+        }
+    }
+
+    /// The rows of the axes that the level controls.
+    #[inline(always)]
+    fn push(
+        &mut self,
+        axes: Axes,
+        command: &Command<T>,
+        joints: &JointState<T>,
+        all: &JacobianRows<T>,
+    ) {
+        let start = self.count;
+        for axis in 0..3 {
+            let place = self.count;
+            if axes.contains(axis) && place < MAX_ROWS {
+                let mut bias = T::ZERO;
+                for i in 0..DOF {
+                    bias += all.jacobian_dot[axis][i] * joints.dq[i];
+                }
+                self.level_start[place] = start;
+                self.jacobian[place] = all.jacobian[axis];
+                self.jacobian_dot[place] = all.jacobian_dot[axis];
+                self.bias[place] = bias;
+                self.commanded[place] = command.acceleration[axis];
+                self.error[place] = command.error[axis];
+                self.count = place + 1;
+            }
+        }
+    }
+
+    /// Number of rows m.
+    #[must_use]
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.count.min(MAX_ROWS)
+    }
+
+    /// Drops the rows from `count` on.
+    pub fn truncate(&mut self, count: usize) {
+        self.count = self.count.min(count);
+    }
+
+    /// b of (12): the commanded acceleration less (dJ/dt) dq \[m/s2\].
+    #[must_use]
+    #[inline]
+    pub fn acceleration(&self) -> [T; MAX_ROWS] {
+        let mut b = self.commanded;
+        for (b, &bias) in b.iter_mut().zip(&self.bias) {
+            *b -= bias;
+        }
+        b
+    }
+}
+
+impl<T: Real> Default for TaskRows<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// What one level commands on all three axes.
+struct Command<T: Real> {
+    /// As in [`TaskRows::error`].
+    error: Vector3<T>,
+    /// As in [`TaskRows::commanded`].
+    acceleration: Vector3<T>,
+}
+
+impl<T: Real> Command<T> {
+    /// (12) from error, its rate and the desired acceleration.
+    #[inline(always)]
+    fn new(level: &Level<T>, (error, rate, desired): (Vector3<T>, Vector3<T>, Vector3<T>)) -> Self {
+        let rate = level.axes.select(&rate);
+        let error = level.axes.select(&error);
+        Self {
+            error,
+            acceleration: desired + level.damping * rate + level.stiffness * error,
+        }
+    }
+}
+
+#[inline(always)]
+fn orientation_command<T: Real>(
+    level: &Level<T>,
+    index: usize,
+    link: Link,
+    target: &Target<T>,
+    held: &mut HeldPlaces<T>,
+    kinematics: &Kinematics<T>,
+) -> Command<T> {
+    let motion = kinematics.link(link);
+    let actual = orientation::of_rotation(&motion.rotation);
+    let (desired, w, dw) = match target {
+        Target::Orientation { q, w, dw } => {
+            held.release(index);
+            (*q, *w, *dw)
+        }
+        _ => (held.hold(index, || actual), zeros(), zeros()),
+    };
+    let error = orientation::chord(&desired, &actual);
+    Command::new(level, (error, w - motion.angular_velocity, dw))
+}

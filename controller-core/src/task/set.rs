@@ -1,0 +1,226 @@
+//! Tasks as plain data: what a priority level tracks, and the set of all levels.
+
+use super::{Axes, Target, orientation};
+use crate::arm::kinematics::{Kinematics, PointMotion};
+use crate::arm::{Link, LinkPoint};
+use crate::error::ConfigError;
+use crate::gain::{self, Gain, diagonal};
+use crate::joint::{Matrix3, Vector3, zeros};
+use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M};
+use crate::real::Real;
+
+/// What a task tracks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+pub enum Tracked {
+    /// The position of a point of the arm, along the axes of the task.
+    Position(LinkPoint),
+    /// The orientation of a link's DH frame, about the axes of the task.
+    Orientation(Link),
+}
+
+/// Gains of a task, by rows; they act on acceleration. Only the rows and columns of
+/// the controlled axes are read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaskGains {
+    /// K_p of (12) \[1/s2\], symmetric positive definite on the controlled axes.
+    pub stiffness: [[f64; 3]; 3],
+    /// K_d of (12) \[1/s\], likewise.
+    pub damping: [[f64; 3]; 3],
+}
+
+impl TaskGains {
+    /// The same `stiffness` \[1/s2\] and `damping` \[1/s\] on every axis.
+    #[must_use]
+    pub const fn uniform(stiffness: f64, damping: f64) -> Self {
+        Self::diagonal([stiffness; 3], [damping; 3])
+    }
+
+    /// One `stiffness` \[1/s2\] and `damping` \[1/s\] per axis x, y, z.
+    #[must_use]
+    pub const fn diagonal(stiffness: [f64; 3], damping: [f64; 3]) -> Self {
+        Self {
+            stiffness: diagonal(stiffness),
+            damping: diagonal(damping),
+        }
+    }
+}
+
+/// A tracking task, one priority level. Plain `f64` data, usable as a constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Task {
+    /// The point or link.
+    pub tracked: Tracked,
+    /// Base-plate axes that are controlled: along them, or for an orientation about
+    /// them.
+    pub axes: Axes,
+    /// Gains.
+    pub gains: TaskGains,
+}
+
+impl Task {
+    /// Tracks the position of `point` along `axes`.
+    #[must_use]
+    pub const fn position(point: LinkPoint, axes: Axes, gains: TaskGains) -> Self {
+        Self {
+            tracked: Tracked::Position(point),
+            axes,
+            gains,
+        }
+    }
+
+    /// Tracks the orientation of the DH frame of `link` about `axes`.
+    #[must_use]
+    pub const fn orientation(link: Link, axes: Axes, gains: TaskGains) -> Self {
+        Self {
+            tracked: Tracked::Orientation(link),
+            axes,
+            gains,
+        }
+    }
+
+    fn validate(&self, level: usize) -> Result<(), ConfigError> {
+        if let Tracked::Position(point) = &self.tracked {
+            for &value in &point.offset {
+                if !(-POINT_OFFSET_MAX_M..=POINT_OFFSET_MAX_M).contains(&value) {
+                    return Err(ConfigError::PointOffset { level, value });
+                }
+            }
+        }
+        let (TaskGains { stiffness, damping }, used) = (&self.gains, self.axes.flags());
+        gain::validate(Gain::TaskStiffness, level, stiffness, used)?;
+        gain::validate(Gain::TaskDamping, level, damping, used)
+    }
+}
+
+/// Tasks in priority order, highest first: 1 to 7 levels of 1 to 3 rows, each valid,
+/// together at most [`MAX_ROWS`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TaskSet {
+    tasks: [Task; MAX_LEVELS],
+    count: usize,
+}
+
+impl TaskSet {
+    /// Checks the tasks and keeps them in this order.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that cannot be: too many levels or rows, a
+    /// point too far from its link, gains that are not finite, symmetric and positive
+    /// definite.
+    pub fn new(tasks: &[Task]) -> Result<Self, ConfigError> {
+        let count = tasks.len();
+        if !(1..=MAX_LEVELS).contains(&count) {
+            return Err(ConfigError::Levels { levels: count });
+        }
+        let rows = tasks.iter().map(|task| task.axes.count()).sum();
+        if rows > MAX_ROWS {
+            return Err(ConfigError::Rows { rows });
+        }
+        for (level, task) in (1..).zip(tasks) {
+            task.validate(level)?;
+        }
+        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        let mut set = Self {
+            tasks: [UNUSED; MAX_LEVELS],
+            count,
+        };
+        for (place, task) in set.tasks.iter_mut().zip(tasks) {
+            *place = *task;
+        }
+        Ok(set)
+    }
+
+    /// The tasks, highest priority first.
+    #[must_use]
+    pub fn tasks(&self) -> &[Task] {
+        self.tasks.get(..self.count).unwrap_or(&[])
+    }
+}
+
+/// What a level tracks, in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LevelPoint<T: Real> {
+    /// A point with this offset \[m\] in the DH frame of its link.
+    Position(Link, Vector3<T>),
+    /// The DH frame of a link.
+    Orientation(Link),
+}
+
+impl<T: Real> LevelPoint<T> {
+    /// As it moves now: position or orientation and velocity, no acceleration.
+    pub fn target(&self, kinematics: &Kinematics<T>) -> Target<T> {
+        match self {
+            Self::Position(link, offset) => {
+                let PointMotion { x, dx } = kinematics.point(*link, offset);
+                Target::Position {
+                    x,
+                    dx,
+                    ddx: zeros(),
+                }
+            }
+            Self::Orientation(link) => {
+                let motion = kinematics.link(*link);
+                Target::Orientation {
+                    q: orientation::of_rotation(&motion.rotation),
+                    w: motion.angular_velocity,
+                    dw: zeros(),
+                }
+            }
+        }
+    }
+}
+
+/// A task in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Level<T: Real> {
+    pub tracked: LevelPoint<T>,
+    pub axes: Axes,
+    /// K_p \[1/s2\].
+    pub stiffness: Matrix3<T>,
+    /// K_d \[1/s\].
+    pub damping: Matrix3<T>,
+}
+
+/// All levels in the precision of the controller, highest priority first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Levels<T: Real> {
+    levels: [Level<T>; MAX_LEVELS],
+    count: usize,
+}
+
+impl<T: Real> Levels<T> {
+    pub fn new(set: &TaskSet) -> Self {
+        let mut levels = Self {
+            levels: [Level {
+                tracked: LevelPoint::Orientation(Link::L7),
+                axes: Axes::XYZ,
+                stiffness: zeros(),
+                damping: zeros(),
+            }; MAX_LEVELS],
+            count: set.count,
+        };
+        for (level, task) in levels.levels.iter_mut().zip(set.tasks()) {
+            level.axes = task.axes;
+            level.tracked = match task.tracked {
+                Tracked::Position(LinkPoint { link, offset }) => {
+                    LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
+                }
+                Tracked::Orientation(link) => LevelPoint::Orientation(link),
+            };
+            for row in 0..3 {
+                for column in 0..3 {
+                    let TaskGains { stiffness, damping } = &task.gains;
+                    level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
+                    level.damping[(row, column)] = T::from_f64(damping[row][column]);
+                }
+            }
+        }
+        levels
+    }
+
+    #[inline(always)]
+    pub fn as_slice(&self) -> &[Level<T>] {
+        self.levels.get(..self.count).unwrap_or(&[])
+    }
+}
