@@ -5,6 +5,7 @@ pub mod config;
 mod controller;
 mod data;
 mod delay;
+mod inspection;
 pub mod measurement;
 pub mod observer;
 pub mod record;
@@ -14,3 +15,4 @@ pub mod velocity;
 
 pub use controller::{Controller, Step};
 pub use data::{Data, Input, State};
+pub use inspection::Inspection;

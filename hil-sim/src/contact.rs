@@ -100,7 +100,7 @@ impl Contacts {
         for (hand, origin) in &mut self.hands {
             if origin.is_none() && t_s >= hand.from_s {
                 let point = hand.point.resolve();
-                let (x, _) = plant.point(state, point.link, &point.offset);
+                let (x, _) = plant.point(state, point.link.number(), &point.offset.into());
                 *origin = Some(hand.along(&x));
             }
         }
@@ -121,17 +121,19 @@ impl Contacts {
             let force = push.force(t_s);
             if force != Vector3::zeros() {
                 let point = push.point.resolve();
-                torque += plant.point_torque(&state.q, point.link, &point.offset, &force);
+                torque +=
+                    plant.point_torque(&state.q, point.link.number(), &point.offset.into(), &force);
             }
         }
         for (hand, origin) in &self.hands {
             let Some(origin) = *origin else { continue };
             let point = hand.point.resolve();
-            let (x, dx) = plant.point(state, point.link, &point.offset);
+            let (x, dx) = plant.point(state, point.link.number(), &point.offset.into());
             let size = hand.size(t_s, origin, &x, &dx);
             if size > 0.0 {
                 let force = hand.vector(size);
-                torque += plant.point_torque(&state.q, point.link, &point.offset, &force);
+                torque +=
+                    plant.point_torque(&state.q, point.link.number(), &point.offset.into(), &force);
                 hand_force = hand_force.max(size);
             }
         }

@@ -1,12 +1,14 @@
 //! The controllers that are compared on equal terms: the product's law and
 //! others, all inside the core's cycle with its checks, observer and limits.
 
-use controller_core::dynamics::Dynamics;
-use controller_core::hierarchy::Hierarchy;
+use controller_core::arm::dynamics::Dynamics;
+use controller_core::cycle::Data;
 use controller_core::joint::{JointMatrix, JointVector};
-use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
+use controller_core::law::control::{Control, TorqueDemand};
+use controller_core::law::hierarchy::Hierarchy;
+use controller_core::law::motion::MotionSplit;
 use controller_core::linalg::Cholesky;
-use controller_core::task::MAX_ROWS;
+use controller_core::ranges::MAX_ROWS;
 
 use crate::names::Named;
 
@@ -100,42 +102,43 @@ impl Decision {
 impl ControllerKind {
     /// What this law decides.
     #[must_use]
-    pub fn decide(self, cycle: &Cycle<'_, f64>, gains: &LawGains) -> Decision {
+    pub fn decide(self, data: &Data<f64>, gains: &LawGains) -> Decision {
         match self {
-            Self::Hierarchical => Decision::levels(cycle, cycle.residual),
-            Self::NoObserver => Decision::levels(cycle, &JointVector::zeros()),
-            Self::Literal => literal(cycle, cycle.command.null_force),
+            Self::Hierarchical => Decision::levels(data, &data.control, data.residual()),
+            Self::NoObserver => Decision::levels(data, &data.control, &JointVector::zeros()),
+            Self::Literal => literal(data, data.control.null_force),
             Self::AsPrinted => {
-                let stiffness = gains.stiffness * (cycle.posture - cycle.state.q);
-                literal(cycle, cycle.command.null_force - stiffness * 2.0)
+                let stiffness = gains.stiffness * (data.posture - data.joints.q);
+                literal(data, data.control.null_force - stiffness * 2.0)
             }
-            Self::AccelerationLevel => acceleration_level(cycle, gains, JointVector::zeros()),
-            Self::AccelerationLevelEstimate => acceleration_level(cycle, gains, -cycle.residual),
+            Self::AccelerationLevel => acceleration_level(data, gains, JointVector::zeros()),
+            Self::AccelerationLevelEstimate => acceleration_level(data, gains, -data.residual()),
         }
     }
 
     /// The joint torque \[Nm\] by which the residual changes the demand.
     #[must_use]
-    pub fn residual_compensation(self, cycle: &Cycle<'_, f64>) -> JointVector<f64> {
+    pub fn residual_compensation(self, data: &Data<f64>) -> JointVector<f64> {
         match self {
             Self::Hierarchical | Self::Literal | Self::AsPrinted => {
-                let (hierarchy, cholesky) = (cycle.hierarchy, &cycle.dynamics.cholesky);
-                let whitened = hierarchy.rotate(&cholesky.solve_lower(cycle.residual));
+                let (hierarchy, cholesky) = (&data.hierarchy, &data.dynamics.cholesky);
+                let whitened = hierarchy.rotate(&cholesky.solve_lower(data.residual()));
                 let task = hierarchy.rotate_back(&hierarchy.task_part(&whitened));
                 -cholesky.lower_times(&task)
             }
             Self::NoObserver | Self::AccelerationLevel => JointVector::zeros(),
-            Self::AccelerationLevelEstimate => -cycle.residual,
+            Self::AccelerationLevelEstimate => -data.residual(),
         }
     }
 }
 
 impl Decision {
     /// The product's law with `residual` compensated on the tasks.
-    fn levels(cycle: &Cycle<'_, f64>, residual: &JointVector<f64>) -> Self {
+    fn levels(data: &Data<f64>, control: &Control<f64>, residual: &JointVector<f64>) -> Self {
+        let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
         Self {
-            coordinates: TorqueDemand::whitened(cycle, residual),
-            hierarchy: *cycle.hierarchy,
+            coordinates: TorqueDemand::whitened(dynamics, hierarchy, control, residual),
+            hierarchy: *hierarchy,
             accelerations: false,
             compensation: JointVector::zeros(),
         }
@@ -144,22 +147,16 @@ impl Decision {
 
 /// (34) as printed: every level is given d(Jbar_i dq)/dt = its command, as if
 /// the levels above it stood still.
-fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> Decision {
-    let mut wanted = cycle.rows.wanted;
-    for (wanted, bias) in wanted.iter_mut().zip(jbar_dot_dq(cycle)) {
-        *wanted -= bias;
+fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> Decision {
+    let mut acceleration = data.rows.commanded;
+    for (acceleration, bias) in acceleration.iter_mut().zip(jbar_dot_dq(data)) {
+        *acceleration -= bias;
     }
-    let command = Command {
-        task_acceleration: cycle.hierarchy.solve_uncoupled(&wanted),
+    let control = Control {
+        task_acceleration: data.hierarchy.solve_uncoupled(&acceleration),
         null_force,
     };
-    Decision::levels(
-        &Cycle {
-            command: &command,
-            ..*cycle
-        },
-        cycle.residual,
-    )
+    Decision::levels(data, &control, data.residual())
 }
 
 /// (dJbar_i/dt) dq per row \[m/s2\].
@@ -168,18 +165,19 @@ fn literal(cycle: &Cycle<'_, f64>, null_force: JointVector<f64>) -> Decision {
 /// P = M^-1 J^T Lambda J of their stacked rows J. Differentiating P gives, with
 /// F = Lambda J dq, w = P dq, n = N dq and u = M^-1 ((dJ/dt)^T F - (dM/dt) w),
 /// (dN/dt) dq = -N u - J^# (dJ/dt) n, and dM/dt = C + C^T.
-fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
-    let (rows, dynamics, dq) = (cycle.rows, cycle.dynamics, &cycle.state.dq);
+fn jbar_dot_dq(data: &Data<f64>) -> [f64; MAX_ROWS] {
+    let (rows, dynamics, dq) = (&data.rows, &data.dynamics, &data.joints.dq);
     let cholesky = &dynamics.cholesky;
     let mut bias = rows.bias;
     for row in 0..rows.count() {
-        let mut above = rows.clone();
+        let mut above = *rows;
         above.truncate(rows.level_start[row]);
         if above.count() == 0 {
             continue;
         }
-        let hierarchy = Hierarchy::new(&above, cholesky);
-        let motion = TaskMotion::new(dynamics, &hierarchy, cycle.state);
+        let (mut hierarchy, mut motion) = (Hierarchy::new(), MotionSplit::new());
+        hierarchy.update(&above, cholesky);
+        motion.update(dynamics, &hierarchy, &data.joints);
         let (w, n) = (motion.task_velocity, motion.null_velocity);
         let mut transport = -(dynamics.coriolis_matrix * w + dynamics.coriolis_transpose_times(&w));
         let mut turning = [0.0; MAX_ROWS];
@@ -201,13 +199,14 @@ fn jbar_dot_dq(cycle: &Cycle<'_, f64>) -> [f64; MAX_ROWS] {
 /// The hierarchy of Moore-Penrose inverses is the same row-ordered
 /// factorisation, of J instead of J L^-T.
 fn acceleration_level(
-    cycle: &Cycle<'_, f64>,
+    data: &Data<f64>,
     gains: &LawGains,
     compensation: JointVector<f64>,
 ) -> Decision {
-    let hierarchy = Hierarchy::new(cycle.rows, &Cholesky::identity());
-    let tasks = hierarchy.solve(&cycle.rows.acceleration());
-    let braking = -gains.rate.component_mul(&cycle.state.dq);
+    let mut hierarchy = Hierarchy::new();
+    hierarchy.update(&data.rows, &Cholesky::identity());
+    let tasks = hierarchy.solve(&data.rows.acceleration());
+    let braking = -gains.rate.component_mul(&data.joints.dq);
     let null = hierarchy.null_part(&hierarchy.rotate(&braking));
     Decision {
         coordinates: tasks + null,

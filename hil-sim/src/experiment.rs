@@ -5,12 +5,10 @@ mod level;
 use std::io;
 
 use bridge::session::SessionConfig;
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::fault::{Fault, FaultKind};
+use controller_core::cycle::Data;
 use controller_core::joint::{JointState, JointVector};
-use controller_core::law::Cycle;
-use controller_core::measurement::{Measurement, SPEED_FACTOR};
-use controller_core::model::ArmModel;
+use controller_core::ranges::SPEED_FACTOR;
+use controller_core::{Controller, Fault, Measurement, State};
 
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, Decision, LawGains};
@@ -82,12 +80,12 @@ struct Insight {
 }
 
 impl Insight {
-    fn new(cycle: &Cycle<'_, f64>, decision: &Decision) -> Self {
-        let hierarchy = cycle.hierarchy;
+    fn new(data: &Data<f64>, decision: &Decision) -> Self {
+        let hierarchy = &data.hierarchy;
         Self {
             conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
             below: (0..hierarchy.levels())
-                .map(|level| decision.below(cycle.dynamics, level))
+                .map(|level| decision.below(&data.dynamics, level))
                 .collect(),
         }
     }
@@ -107,17 +105,16 @@ impl Experiment {
     /// A configuration that the core refuses, for example a damping that is too
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
-        let model = ArmModel::new(self.scenario.arm()).map_err(Invalid::line)?;
         let config = match self.measurement {
             MeasurementKind::Fri => self.session()?.controller,
             MeasurementKind::Direct => {
                 let dead_cycles = self.options.dead_cycles as u8;
-                let mut config = self.scenario.controller_config(dead_cycles);
-                config.null_space.stiffness *= self.null_stiffness.factor();
+                let mut config = self.scenario.controller_config(dead_cycles)?;
+                config.null_space = config.null_space.stiffened(self.null_stiffness.factor());
                 config
             }
         };
-        Controller::new(&model, &config)
+        Controller::new(self.scenario.arm(), &config)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
     }
 
@@ -125,7 +122,8 @@ impl Experiment {
     fn session(&self) -> Result<SessionConfig, Invalid> {
         let (scenario, dead_cycles) = (&self.scenario, self.options.dead_cycles as u8);
         let mut config = scenario.session_config(dead_cycles, scenario.duration_s)?;
-        config.controller.null_space.stiffness *= self.null_stiffness.factor();
+        let null_space = &mut config.controller.null_space;
+        *null_space = null_space.stiffened(self.null_stiffness.factor());
         Ok(config)
     }
 
@@ -180,7 +178,7 @@ impl Experiment {
         let origins = scenario.origins_at(&scenario.start());
         let gains = LawGains {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
-            stiffness: controller.null_space().stiffness,
+            stiffness: controller.compliance().stiffness,
         };
         let mut plant = Plant::with_options(
             self.plant,
@@ -190,15 +188,15 @@ impl Experiment {
             self.seed,
             self.options,
         );
-        let mut state = ControllerState::new();
-        let limits = controller.model().position_limit();
+        let mut state = State::new();
+        let limits = controller.arm().position_limit();
         let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
         let mut stop = None;
 
         for cycle in 0..cycles {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
-            stop = unsafe_motion(&truth, controller.model().speed_limit()).map(Stop::Safety);
+            stop = unsafe_motion(&truth, controller.arm().speed_limit()).map(Stop::Safety);
             if stop.is_some() {
                 break;
             }
@@ -210,10 +208,10 @@ impl Experiment {
             };
             let reference = scenario.reference(&origins, &scenario.start(), t_s);
             let mut insight = Insight::default();
-            let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
-                let decision = self.controller.decide(cycle, &gains);
-                insight = Insight::new(cycle, &decision);
-                decision.demand(cycle.dynamics)
+            let step = controller.step_with(&mut state, &measurement, &reference, |_, _, data| {
+                let decision = self.controller.decide(data, &gains);
+                insight = Insight::new(data, &decision);
+                data.demand = decision.demand(&data.dynamics);
             });
             stop = step.status.fault.map(Stop::Fault);
             if stop.is_some() {
@@ -269,10 +267,7 @@ impl Experiment {
             None => summary::verdict(&acceptance),
             Some(Stop::Safety(reason)) => (Verdict::Stopped, Some(reason)),
             Some(Stop::Fault(fault)) => {
-                match fault.kind {
-                    FaultKind::NonFiniteTorque => faults.non_finite_torque += 1,
-                    _ => faults.implausible += 1,
-                }
+                faults.add(fault.kind);
                 (Verdict::Stopped, Some(fault.to_string()))
             }
         };

@@ -3,15 +3,10 @@
 mod input;
 mod output;
 
-use controller_core::dynamics::Dynamics;
-use controller_core::hierarchy::Hierarchy;
-use controller_core::joint::{JointMatrix, JointVector};
-use controller_core::kinematics::Kinematics;
-use controller_core::law::{Command, Cycle, NullDamping, NullSpace, Posture, TaskMotion};
-use controller_core::limits::TorqueCommand;
-use controller_core::model::ArmModel;
-use controller_core::observer::Observer;
-use controller_core::task::TaskRows;
+use controller_core::cycle::{Data, Input as CycleInput, Inspection};
+use controller_core::gain::diagonal;
+use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
+use controller_core::{Measurement, Reference};
 
 use crate::controllers::LawGains;
 use crate::invalid::Invalid;
@@ -25,67 +20,49 @@ pub use output::Output;
 /// Anything in the text that cannot be used.
 pub fn explain(text: &str) -> Result<Output, Invalid> {
     let input = Input::parse(text)?;
-    let model = ArmModel::new(input.arm()).map_err(Invalid::line)?;
-    let state = input.state();
-    let (tasks, references) = input.tasks();
-
-    let kinematics = Kinematics::new(&model, &state);
-    let dynamics = Dynamics::new(&model, &kinematics, &state);
-    let residual = match &input.observer {
-        None => JointVector::from(input.residual),
-        Some(previous) => {
-            let mut observer = Observer {
-                momentum: previous.momentum_prev.into(),
-                input: previous.input_prev.into(),
-                residual: previous.residual_prev.into(),
-                started: true,
-                ..Observer::new()
-            };
-            observer.update(&previous.gain.into(), previous.h, &dynamics.momentum)
-        }
-    };
-    let rows = TaskRows::new(&tasks, &references, &kinematics, &state);
-    let hierarchy = Hierarchy::new(&rows, &dynamics.cholesky);
-    let motion = TaskMotion::new(&dynamics, &hierarchy, &state);
+    let (tasks, targets) = input.tasks();
     let null_space = NullSpace {
-        stiffness: JointMatrix::from_diagonal(&input.null_space.stiffness.into()),
-        damping: NullDamping::Joint(JointMatrix::from_diagonal(&input.null_space.damping.into())),
+        stiffness: diagonal(input.null_space.stiffness),
+        damping: NullDamping::Joint(diagonal(input.null_space.damping)),
         posture: Posture::Constant,
     };
-    let posture = input.null_space.q_d.into();
-    let command = Command::new(
-        &null_space,
-        &dynamics,
-        &rows,
-        &hierarchy,
-        &motion,
-        &state,
-        &posture,
-    );
-    let cycle = Cycle {
-        state: &state,
-        kinematics: &kinematics,
-        dynamics: &dynamics,
-        rows: &rows,
-        hierarchy: &hierarchy,
-        motion: &motion,
-        posture: &posture,
-        command: &command,
-        residual: &residual,
+    let observer = input.observer.as_ref();
+    let gain = observer.map_or([0.0; 7], |observer| observer.gain);
+    let inspection =
+        Inspection::new(input.arm(), &tasks, &null_space, gain).map_err(Invalid::line)?;
+
+    let mut data = Data::new();
+    data.observer.residual = input.residual.into();
+    if let Some(previous) = observer {
+        data.observer.momentum = previous.momentum_prev.into();
+        data.observer.input = previous.input_prev.into();
+        data.observer.residual = previous.residual_prev.into();
+        data.observer.started = true;
+    }
+    let measurement = Measurement {
+        q: input.q.into(),
+        dq: input.dq.into(),
+        interval_s: observer.map_or(1.0, |observer| observer.h),
     };
-    let controller = input.controller();
+    let reference = Reference::from_targets(&targets, input.null_space.q_d)
+        .ok_or_else(|| Invalid::new("levels", targets.len(), "1 to 7 levels"))?;
     let gains = LawGains {
         rate: input.null_space.rate_gain.into(),
-        stiffness: null_space.stiffness,
+        stiffness: controller_core::joint::JointMatrix::from_diagonal(
+            &input.null_space.stiffness.into(),
+        ),
     };
-    let demand = controller.decide(&cycle, &gains).demand(&dynamics);
-    let limited = TorqueCommand::new(&demand, model.torque_limit())
-        .map_err(|fault| Invalid::line(fault).within("the torque of this state"))?;
-    Ok(Output::new(
-        &cycle,
-        &tasks,
-        controller.residual_compensation(&cycle),
-        &demand,
-        &limited,
-    ))
+    let controller = input.controller();
+    let cycle = CycleInput {
+        measurement: &measurement,
+        reference: &reference,
+    };
+    inspection.evaluate_with(&cycle, &mut data, |_, _, data| {
+        data.demand = controller.decide(data, &gains).demand(&data.dynamics);
+    });
+    if let Some(fault) = data.allocation.fault(&data.demand) {
+        return Err(Invalid::line(fault).within("the torque of this state"));
+    }
+    let compensation = controller.residual_compensation(&data);
+    Ok(Output::new(&data, &tasks, &compensation))
 }

@@ -1,5 +1,6 @@
 //! Figures of a run, accumulated cycle by cycle.
 
+use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
@@ -224,6 +225,24 @@ pub struct FaultCounts {
     pub implausible: usize,
     /// Torque that is not finite.
     pub non_finite_torque: usize,
+    /// Target that does not fit its level; left out where there is none.
+    #[serde(skip_serializing_if = "none")]
+    pub wrong_target: usize,
+}
+
+fn none(count: &usize) -> bool {
+    *count == 0
+}
+
+impl FaultCounts {
+    /// Counts one. A kind that has no figure of its own is an implausible one.
+    pub fn add(&mut self, kind: FaultKind) {
+        match kind {
+            FaultKind::NonFiniteTorque => self.non_finite_torque += 1,
+            FaultKind::WrongTarget => self.wrong_target += 1,
+            _ => self.implausible += 1,
+        }
+    }
 }
 
 #[derive(Clone, Debug, Default)]

@@ -10,12 +10,12 @@ mod session;
 
 use std::path::Path;
 
-use controller_core::config::ControllerConfig;
-use controller_core::joint::{DOF, JointState, JointVector, diagonal};
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::Reference;
-use controller_core::model::{ArmParameters, LWR_IV};
-use controller_core::task::{Axes, MAX_LEVELS, MAX_ROWS, Task, TaskKind, TaskReference};
+use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::gain::diagonal;
+use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
+use controller_core::ranges::{MAX_LEVELS, MAX_ROWS};
+use controller_core::{Axes, ControllerConfig, Reference, Target, Task, TaskGains, TaskSet};
 use serde::{Deserialize, Deserializer};
 
 use crate::contact::{Contacts, Hand, Push};
@@ -354,10 +354,13 @@ impl Scenario {
 
     /// The configuration of the controller core for a loop with `dead_cycles`
     /// cycles between measurement and torque.
-    #[must_use]
-    pub fn controller_config(&self, dead_cycles: u8) -> ControllerConfig<f64> {
-        ControllerConfig {
-            tasks: self.levels.iter().map(LevelSpec::task).collect(),
+    ///
+    /// # Errors
+    /// Tasks that the core refuses.
+    pub fn controller_config(&self, dead_cycles: u8) -> Result<ControllerConfig, Invalid> {
+        let tasks: Vec<_> = self.levels.iter().map(LevelSpec::task).collect();
+        Ok(ControllerConfig {
+            tasks: TaskSet::new(&tasks).map_err(|error| Invalid::line(error).within(&self.name))?,
             null_space: NullSpace {
                 stiffness: diagonal(self.null_space.stiffness),
                 damping: if dead_cycles == 0 {
@@ -371,10 +374,10 @@ impl Scenario {
                     PostureSpec::IntegralUncoupled => Posture::IntegralUncoupled,
                 },
             },
-            observer_gain: JointVector::repeat(self.observer.gain),
+            observer_gain: [self.observer.gain; DOF],
             cycle_s: self.cycle_s(),
             dead_cycles,
-        }
+        })
     }
 
     /// Pushes and hands, before the run.
@@ -388,24 +391,23 @@ impl Scenario {
     #[must_use]
     pub fn reference(
         &self,
-        origins: &[TaskReference<f64>],
+        origins: &[Target<f64>],
         posture: &JointVector<f64>,
         t_s: f64,
     ) -> Reference<f64> {
+        let mut reference = Reference::hold(self.levels.len(), *posture);
         let levels = self.levels.iter().zip(origins);
-        Reference {
-            tasks: levels
-                .map(|(level, origin)| level.reference.sample(origin, t_s))
-                .collect(),
-            posture: *posture,
+        for (target, (level, origin)) in reference.targets_mut().iter_mut().zip(levels) {
+            *target = level.reference.sample(origin, t_s);
         }
+        reference
     }
 
     /// Where the levels' points and frames are in the posture `q` \[rad\],
     /// base-plate frame.
     #[must_use]
-    pub fn origins_at(&self, q: &JointVector<f64>) -> Vec<TaskReference<f64>> {
-        self.levels.iter().map(|level| level.place(q)).collect()
+    pub fn origins_at(&self, q: &JointVector<f64>) -> Vec<Target<f64>> {
+        self.levels.iter().map(|level| level.rest_at(q)).collect()
     }
 }
 
@@ -472,31 +474,33 @@ impl LevelSpec {
             .map_err(|error| error.in_table("reference"))
     }
 
-    /// Where the level's point and frame are in a posture \[rad\], at rest.
+    /// At rest where the level's point or frame is in a posture \[rad\].
     #[must_use]
-    pub fn place(&self, q: &JointVector<f64>) -> TaskReference<f64> {
-        let state = JointState {
-            q: *q,
-            dq: JointVector::zeros(),
-        };
+    pub fn rest_at(&self, q: &JointVector<f64>) -> Target<f64> {
         let point = self.point.resolve();
-        let orientation = geometry::orientation(q, point.link);
-        let (x, _) = PlantModel::new(&LWR_IV).point(&state, point.link, &point.offset);
-        TaskReference {
-            orientation,
-            ..TaskReference::rest(x)
+        let link = point.link.number();
+        match self.task {
+            TaskSpec::Position => {
+                let state = JointState {
+                    q: *q,
+                    dq: JointVector::zeros(),
+                };
+                let (x, _) = PlantModel::new(&LWR_IV).point(&state, link, &point.offset.into());
+                Target::position(x)
+            }
+            TaskSpec::Orientation => Target::orientation(geometry::orientation(q, link)),
         }
     }
 
     /// The core's task. The level must be valid.
     #[must_use]
-    pub fn task(&self) -> Task<f64> {
+    pub fn task(&self) -> Task {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |gain: &AxisGain| match gain {
             AxisGain::Uniform(value) => [*value; 3],
             AxisGain::PerAxis(values) => {
                 let mut values = values.iter();
-                axes.xyz.map(|on| {
+                axes.flags().map(|on| {
                     if on {
                         *values.next().unwrap_or(&1.0)
                     } else {
@@ -505,14 +509,11 @@ impl LevelSpec {
                 })
             }
         };
-        let kind = match self.task {
-            TaskSpec::Position => TaskKind::Position,
-            TaskSpec::Orientation => TaskKind::Orientation,
-        };
-        let gains = (spread(&self.stiffness), spread(&self.damping));
-        Task {
-            kind,
-            ..Task::diagonal(self.point.resolve(), axes, gains.0, gains.1)
+        let gains = TaskGains::diagonal(spread(&self.stiffness), spread(&self.damping));
+        let point = self.point.resolve();
+        match self.task {
+            TaskSpec::Position => Task::position(point, axes, gains),
+            TaskSpec::Orientation => Task::orientation(point.link, axes, gains),
         }
     }
 

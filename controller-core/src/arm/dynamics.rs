@@ -61,11 +61,7 @@ impl<T: Real> Dynamics<T> {
         let transform = |i: usize| JointTransform {
             sine: kinematics.sine[i],
             cosine: kinematics.cosine[i],
-            link: if i == 0 {
-                &arm.base
-            } else {
-                &arm.links[i - 1]
-            },
+            link: if i == 0 { &arm.base } else { &arm.links[i - 1] },
         };
         let base = Motion {
             spin: [T::ZERO; 3],

@@ -60,7 +60,10 @@ fn rotate_about_z<T: Copy, E: Entry<T>>([x, y, z]: [E; 3], sine: T, cosine: T) -
 
 /// Rotation about x by the twist of `link`, whose class is `EXCHANGE`.
 #[inline(always)]
-fn rotate_about_x<T: Real, E: Entry<T>, const EXCHANGE: u8>([x, y, z]: [E; 3], link: &LinkModel<T>) -> [E; 3] {
+fn rotate_about_x<T: Real, E: Entry<T>, const EXCHANGE: u8>(
+    [x, y, z]: [E; 3],
+    link: &LinkModel<T>,
+) -> [E; 3] {
     match EXCHANGE {
         AxisExchange::NONE => [x, y, z],
         AxisExchange::RIGHT => [x, -z, y],

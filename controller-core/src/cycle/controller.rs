@@ -23,9 +23,9 @@ pub struct Controller<T: Real> {
     pub(super) levels: Levels<T>,
     pub(super) compliance: Compliance<T>,
     pub(super) observer_gain: JointVector<T>,
-    cycle_s: T,
+    pub(super) cycle_s: T,
     pub(super) dead_cycles: u8,
-    fastest_mode: DampingRate,
+    pub(super) fastest_mode: DampingRate,
 }
 
 /// The result of one cycle.

@@ -54,7 +54,13 @@ pub(crate) fn believe<T: Real>(
 }
 
 #[inline(always)]
-pub(crate) fn within<T: Real>(quantity: Quantity, index: u8, value: T, min: T, max: T) -> Result<(), Fault> {
+pub(crate) fn within<T: Real>(
+    quantity: Quantity,
+    index: u8,
+    value: T,
+    min: T,
+    max: T,
+) -> Result<(), Fault> {
     // False for NaN as well.
     if value >= min && value <= max {
         return Ok(());

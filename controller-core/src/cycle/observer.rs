@@ -50,12 +50,7 @@ impl<T: Real> Observer<T> {
     /// and the present momentum \[Nms\]. Afterwards `residual` is r \[Nm\], which tends to
     /// -tau_ext: positive where the environment pushes the joint forward.
     #[inline]
-    pub fn update(
-        &mut self,
-        gain: &JointVector<T>,
-        interval_s: T,
-        momentum: &JointVector<T>,
-    ) {
+    pub fn update(&mut self, gain: &JointVector<T>, interval_s: T, momentum: &JointVector<T>) {
         if self.started {
             let rate = T::ONE / interval_s;
             let innovation = (momentum - self.momentum) * rate - self.input;

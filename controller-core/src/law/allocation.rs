@@ -41,8 +41,9 @@ impl<T: Real> Allocation<T> {
         self.saturated = saturated;
     }
 
-    /// The fault of a demand that was not finite.
-    pub(crate) fn fault(&self, demand: &TorqueDemand<T>) -> Option<Fault> {
+    /// The fault of a `demand` that was not finite.
+    #[must_use]
+    pub fn fault(&self, demand: &TorqueDemand<T>) -> Option<Fault> {
         if self.finite {
             return None;
         }

@@ -70,9 +70,7 @@ impl NullSpace {
     pub(crate) fn validate(&self) -> Result<(), ConfigError> {
         gain::validate(Gain::NullStiffness, 0, &self.stiffness, [true; DOF])?;
         match &self.damping {
-            NullDamping::Joint(matrix) => {
-                gain::validate(Gain::NullDamping, 0, matrix, [true; DOF])
-            }
+            NullDamping::Joint(matrix) => gain::validate(Gain::NullDamping, 0, matrix, [true; DOF]),
             &NullDamping::Inertia(value) if value > 0.0 && value <= GAIN_MAX => Ok(()),
             &NullDamping::Inertia(value) => Err(ConfigError::InertiaDamping { value }),
         }

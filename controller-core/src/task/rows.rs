@@ -79,7 +79,8 @@ impl<T: Real> TaskRows<T> {
                     self.push(level.axes, &command, joints, &rows);
                 }
                 LevelPoint::Orientation(link) => {
-                    let command = orientation_command(level, index, *link, target, held, kinematics);
+                    let command =
+                        orientation_command(level, index, *link, target, held, kinematics);
                     let rows = kinematics.angular_jacobian(*link);
                     self.push(level.axes, &command, joints, &rows);
                 }

@@ -109,6 +109,15 @@ impl TaskSet {
     /// point too far from its link, gains that are not finite, symmetric and positive
     /// definite.
     pub fn new(tasks: &[Task]) -> Result<Self, ConfigError> {
+        let set = Self::unvalidated(tasks)?;
+        for (level, task) in (1..).zip(tasks) {
+            task.validate(level)?;
+        }
+        Ok(set)
+    }
+
+    /// The same without a look at points and gains.
+    pub(crate) fn unvalidated(tasks: &[Task]) -> Result<Self, ConfigError> {
         let count = tasks.len();
         if !(1..=MAX_LEVELS).contains(&count) {
             return Err(ConfigError::Levels { levels: count });
@@ -116,9 +125,6 @@ impl TaskSet {
         let rows = tasks.iter().map(|task| task.axes.count()).sum();
         if rows > MAX_ROWS {
             return Err(ConfigError::Rows { rows });
-        }
-        for (level, task) in (1..).zip(tasks) {
-            task.validate(level)?;
         }
         const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let mut set = Self {

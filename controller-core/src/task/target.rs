@@ -102,10 +102,7 @@ impl<T: Real> Reference<T> {
 
     /// The same from a slice; none where it is longer than [`MAX_LEVELS`].
     #[must_use]
-    pub fn from_targets(
-        targets: &[Target<T>],
-        posture: impl Into<JointVector<T>>,
-    ) -> Option<Self> {
+    pub fn from_targets(targets: &[Target<T>], posture: impl Into<JointVector<T>>) -> Option<Self> {
         if targets.len() > MAX_LEVELS {
             return None;
         }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use controller_core::Controller;
 
 use super::files::Files;
 use super::values::{dead_cycles, number, seed};
@@ -227,15 +228,12 @@ fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result
 }
 
 /// A damping above half its bound works, but says so.
-fn warn_of_damping(
-    experiment: &Experiment,
-    controller: &controller_core::controller::Controller<f64>,
-) {
+fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
     let dead_cycles = experiment.options.dead_cycles as u8;
-    let bound = experiment
-        .scenario
-        .controller_config(dead_cycles)
-        .damping_bound();
+    let Ok(config) = experiment.scenario.controller_config(dead_cycles) else {
+        return;
+    };
+    let bound = config.damping_bound();
     let mode = controller.fastest_mode();
     let value = mode.rate * experiment.scenario.cycle_s();
     if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {

@@ -2,7 +2,7 @@
 //! moves away and comes back, and which only pushes.
 
 use controller_core::joint::Vector3;
-use controller_core::trajectory::quintic;
+use controller_core::task::trajectory::quintic;
 use serde::Deserialize;
 
 use super::Interval;

@@ -61,7 +61,7 @@ impl Push {
             return JointVector::zeros();
         }
         let point = self.point.resolve();
-        plant.point_torque(&state.q, point.link, &point.offset, &force)
+        plant.point_torque(&state.q, point.link.number(), &point.offset.into(), &force)
     }
 
     /// Force on the arm at time `t_s` \[N\].

@@ -1,10 +1,8 @@
 //! What a level's point or frame really does, seen by the plant.
 
 use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::kinematics::LinkPoint;
-use controller_core::measurement::Reference;
-use controller_core::orientation;
-use controller_core::task::Axes;
+use controller_core::task::orientation;
+use controller_core::{Axes, LinkPoint, Reference, Target};
 
 use crate::plant::PlantModel;
 use crate::scenario::{self, Scenario, TaskSpec};
@@ -16,7 +14,7 @@ pub struct LevelInstant {
     pub desired: Vec<f64>,
     /// True coordinates of its axes \[m\], or the true quaternion.
     pub actual: Vec<f64>,
-    /// Norm of their difference \[m\], or of the orientation error \[rad\].
+    /// Norm of their difference \[m\], or the angle between them about the axes \[rad\].
     pub error: f64,
     /// Norm of the task acceleration that the torques of lower levels and of the
     /// null space cause on this arm \[m/s2\], or \[rad/s2\]; NaN where it is not known.
@@ -32,7 +30,7 @@ pub(crate) struct Places(pub Vec<Place>);
 
 pub(crate) struct Place {
     task: TaskSpec,
-    point: LinkPoint<f64>,
+    point: LinkPoint,
     axes: Axes,
 }
 
@@ -53,43 +51,61 @@ impl Places {
         truth: &JointState<f64>,
         reference: &Reference<f64>,
     ) -> Vec<LevelInstant> {
-        let levels = self.0.iter().zip(&reference.tasks);
+        let levels = self.0.iter().zip(reference.targets());
         levels
-            .map(|(place, reference)| {
-                let (x, _) = plant.point(truth, place.point.link, &place.point.offset);
-                let shown = LevelInstant {
-                    desired_point: reference.x.into(),
-                    actual_point: x.into(),
-                    leak: f64::NAN,
-                    ..LevelInstant::default()
-                };
-                match place.task {
-                    TaskSpec::Position => LevelInstant {
-                        desired: place.pick(&reference.x).collect(),
-                        actual: place.pick(&x).collect(),
-                        error: place.norm(&(reference.x - x)),
-                        ..shown
-                    },
-                    TaskSpec::Orientation => {
-                        let desired = reference.orientation;
-                        let actual = scenario::orientation(&truth.q, place.point.link);
-                        LevelInstant {
-                            desired: desired.as_slice().to_vec(),
-                            actual: actual.as_slice().to_vec(),
-                            error: place.norm(&orientation::error(&desired, &actual)),
-                            ..shown
-                        }
-                    }
-                }
-            })
+            .map(|(place, target)| place.instant(plant, truth, target))
             .collect()
     }
 }
 
 impl Place {
+    /// The level at the plant's true state. A level that holds has no desired
+    /// coordinates but its own.
+    fn instant(
+        &self,
+        plant: &PlantModel,
+        truth: &JointState<f64>,
+        target: &Target<f64>,
+    ) -> LevelInstant {
+        let (x, _) = self.point(plant, truth);
+        let mut shown = LevelInstant {
+            desired_point: x.into(),
+            actual_point: x.into(),
+            leak: f64::NAN,
+            ..LevelInstant::default()
+        };
+        if self.task == TaskSpec::Orientation {
+            let actual = scenario::orientation(&truth.q, self.point.link.number());
+            let desired = match target {
+                Target::Orientation { q, .. } => *q,
+                _ => actual,
+            };
+            let chord = orientation::chord(&desired, &actual);
+            shown.desired = desired.as_slice().to_vec();
+            shown.actual = actual.as_slice().to_vec();
+            shown.error = self.norm(&orientation::rotation_vector(&chord));
+            return shown;
+        }
+        let desired = match target {
+            Target::Position { x, .. } => *x,
+            _ => x,
+        };
+        shown.desired = self.pick(&desired).collect();
+        shown.actual = self.pick(&x).collect();
+        shown.error = self.norm(&(desired - x));
+        shown.desired_point = desired.into();
+        shown
+    }
+
+    /// Position and velocity of the point, or of the link's frame.
+    fn point(&self, plant: &PlantModel, state: &JointState<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        let LinkPoint { link, offset } = self.point;
+        plant.point(state, link.number(), &offset.into())
+    }
+
     fn pick<'a>(&'a self, v: &'a Vector3<f64>) -> impl Iterator<Item = f64> + 'a {
         (0..3)
-            .filter(|&axis| self.axes.xyz[axis])
+            .filter(|&axis| self.axes.contains(axis))
             .map(|axis| v[axis])
     }
 
@@ -116,10 +132,12 @@ impl Place {
         };
         match self.task {
             TaskSpec::Position => {
-                let (_, acceleration) = plant.point(&moving, self.point.link, &self.point.offset);
+                let (_, acceleration) = self.point(plant, &moving);
                 self.norm(&acceleration)
             }
-            TaskSpec::Orientation => self.norm(&angular_velocity(plant, &moving, self.point.link)),
+            TaskSpec::Orientation => {
+                self.norm(&angular_velocity(plant, &moving, self.point.link.number()))
+            }
         }
     }
 }

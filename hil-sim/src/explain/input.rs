@@ -1,9 +1,10 @@
 //! The state to explain, as JSON.
 
-use controller_core::joint::{DOF, JointState, Vector3};
-use controller_core::model::{ArmParameters, LWR_IV};
-use controller_core::orientation::Quaternion;
-use controller_core::task::{Axes, MAX_ROWS, Task, TaskKind, TaskReference};
+use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::joint::{DOF, Vector3};
+use controller_core::ranges::MAX_ROWS;
+use controller_core::task::orientation::Quaternion;
+use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::ControllerKind;
@@ -186,15 +187,6 @@ impl Input {
         &LWR_IV
     }
 
-    /// The joint state.
-    #[must_use]
-    pub fn state(&self) -> JointState<f64> {
-        JointState {
-            q: self.q.into(),
-            dq: self.dq.into(),
-        }
-    }
-
     /// The law.
     #[must_use]
     pub fn controller(&self) -> ControllerKind {
@@ -202,9 +194,9 @@ impl Input {
         ControllerKind::from_name(name).unwrap_or(ControllerKind::Hierarchical)
     }
 
-    /// The core's tasks and their references.
+    /// The core's tasks and their targets.
     #[must_use]
-    pub fn tasks(&self) -> (Vec<Task<f64>>, Vec<TaskReference<f64>>) {
+    pub fn tasks(&self) -> (Vec<Task>, Vec<Target<f64>>) {
         self.levels.iter().map(Level::task).unzip()
     }
 }
@@ -250,11 +242,11 @@ impl Level {
         Ok(rows)
     }
 
-    fn task(&self) -> (Task<f64>, TaskReference<f64>) {
+    fn task(&self) -> (Task, Target<f64>) {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |values: &[f64]| {
             let mut values = values.iter();
-            axes.xyz.map(|on| {
+            axes.flags().map(|on| {
                 if on {
                     *values.next().unwrap_or(&0.0)
                 } else {
@@ -262,28 +254,27 @@ impl Level {
                 }
             })
         };
-        let task = Task::diagonal(
-            self.point.resolve(),
-            axes,
-            spread(&self.kp),
-            spread(&self.kd),
-        );
+        let gains = TaskGains::diagonal(spread(&self.kp), spread(&self.kd));
+        let point = self.point.resolve();
         let vector = |values: &[f64]| Vector3::from(spread(values));
-        let (kind, place) = match self.task {
-            TaskSpec::Position => (TaskKind::Position, TaskReference::rest(vector(&self.x))),
-            TaskSpec::Orientation => {
-                let quaternion =
-                    Quaternion::from_iterator(self.x.iter().copied().chain([0.0; 4]).take(4));
-                (TaskKind::Orientation, TaskReference::facing(quaternion))
-            }
-        };
-        let task = Task { kind, ..task };
-        let reference = TaskReference {
-            dx: vector(&self.dx),
-            ddx: vector(&self.ddx),
-            ..place
-        };
-        (task, reference)
+        match self.task {
+            TaskSpec::Position => (
+                Task::position(point, axes, gains),
+                Target::Position {
+                    x: vector(&self.x),
+                    dx: vector(&self.dx),
+                    ddx: vector(&self.ddx),
+                },
+            ),
+            TaskSpec::Orientation => (
+                Task::orientation(point.link, axes, gains),
+                Target::Orientation {
+                    q: Quaternion::from_iterator(self.x.iter().copied().chain([0.0; 4]).take(4)),
+                    w: vector(&self.dx),
+                    dw: vector(&self.ddx),
+                },
+            ),
+        }
     }
 }
 

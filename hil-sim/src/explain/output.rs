@@ -1,10 +1,9 @@
 //! Everything the law computed, as JSON.
 
+use controller_core::cycle::Data;
 use controller_core::joint::{DOF, JointMatrix, JointVector};
-use controller_core::law::{Cycle, TorqueDemand};
-use controller_core::limits::TorqueCommand;
-use controller_core::orientation;
-use controller_core::task::{Task, TaskKind};
+use controller_core::task::{Tracked, orientation};
+use controller_core::{LinkPoint, Task};
 use serde::Serialize;
 
 /// A matrix as an array of rows.
@@ -54,18 +53,12 @@ pub struct NullSpaceOutput {
 impl Output {
     /// Collects the quantities.
     #[must_use]
-    pub fn new(
-        cycle: &Cycle<'_, f64>,
-        tasks: &[Task<f64>],
-        residual_compensation: JointVector<f64>,
-        demand: &TorqueDemand<f64>,
-        limited: &TorqueCommand<f64>,
-    ) -> Self {
-        let (dynamics, hierarchy) = (cycle.dynamics, cycle.hierarchy);
+    pub fn new(data: &Data<f64>, tasks: &[Task], residual_compensation: &JointVector<f64>) -> Self {
+        let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
         let cholesky = &dynamics.cholesky;
         let levels = (0..)
             .zip(tasks)
-            .map(|(level, task)| LevelOutput::new(cycle, level, task));
+            .map(|(level, task)| LevelOutput::new(data, level, task));
         Self {
             mass_matrix: square(&dynamics.mass_matrix),
             coriolis_matrix: square(&dynamics.coriolis_matrix),
@@ -75,32 +68,32 @@ impl Output {
             null_space: NullSpaceOutput {
                 projector: square(&hierarchy.null_projector(cholesky)),
                 basis: hierarchy.null_basis(cholesky).iter().map(list).collect(),
-                velocity: hierarchy.null_velocity(cholesky, &cycle.state.dq).to_vec(),
+                velocity: hierarchy.null_velocity(cholesky, &data.joints.dq).to_vec(),
             },
             conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
-            residual: list(cycle.residual),
-            residual_compensation: list(&residual_compensation),
-            torque_demand: list(&demand.0),
-            torque: list(&limited.torque),
+            residual: list(data.residual()),
+            residual_compensation: list(residual_compensation),
+            torque_demand: list(&data.demand.0),
+            torque: list(&data.allocation.torque),
         }
     }
 }
 
 impl LevelOutput {
-    fn new(cycle: &Cycle<'_, f64>, level: usize, task: &Task<f64>) -> Self {
-        let (rows, hierarchy) = (cycle.rows, cycle.hierarchy);
-        let cholesky = &cycle.dynamics.cholesky;
+    fn new(data: &Data<f64>, level: usize, task: &Task) -> Self {
+        let (rows, hierarchy) = (&data.rows, &data.hierarchy);
+        let cholesky = &data.dynamics.cholesky;
         let range = hierarchy.level_range(level);
-        let x = match task.kind {
-            TaskKind::Position => {
-                let position = cycle.kinematics.point(&task.point).x;
+        let x = match task.tracked {
+            Tracked::Position(LinkPoint { link, offset }) => {
+                let position = data.kinematics.point(link, &offset.into()).x;
                 (0..3)
-                    .filter(|&axis| task.axes.xyz[axis])
+                    .filter(|&axis| task.axes.contains(axis))
                     .map(|axis| position[axis])
                     .collect()
             }
-            TaskKind::Orientation => {
-                let rotation = cycle.kinematics.link(task.point.link).rotation;
+            Tracked::Orientation(link) => {
+                let rotation = data.kinematics.link(link).rotation;
                 orientation::of_rotation(&rotation).as_slice().to_vec()
             }
         };
@@ -118,7 +111,7 @@ impl LevelOutput {
             lambda: (0..range.len())
                 .map(|i| (0..range.len()).map(|j| lambda[(i, j)]).collect())
                 .collect(),
-            command: rows.wanted[range].to_vec(),
+            command: rows.commanded[range].to_vec(),
         }
     }
 }

@@ -15,16 +15,13 @@
 //!   q~* the distance from the integrated posture (51), coupled form; its
 //!   derivative is -n^T D n.
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::dynamics::Dynamics;
-use controller_core::hierarchy::Hierarchy;
-use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::kinematics::Kinematics;
-use controller_core::law::{Posture, TaskMotion, TorqueDemand};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::task::TaskRows;
+use controller_core::arm::LWR_IV;
+use controller_core::cycle::stages::StageName;
+use controller_core::cycle::{Data, Input};
+use controller_core::joint::{JointVector, Vector3};
+use controller_core::law::control::TorqueDemand;
+use controller_core::law::null_space::{Compliance, Posture};
+use controller_core::{Controller, ControllerConfig, Measurement, Reference, State, Target};
 use serde::Serialize;
 
 use crate::invalid::Invalid;
@@ -99,38 +96,35 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
         cycle_ms,
         ..Scenario::find("case-1")?
     };
-    let mut config = scenario.controller_config(0);
+    let mut config = scenario.controller_config(0)?;
     if kind == Kind::NullSpace {
         config.null_space.posture = Posture::IntegralCoupled;
     }
-    let model = ArmModel::new(&LWR_IV).map_err(Invalid::line)?;
-    let controller = Controller::new(&model, &config).map_err(Invalid::line)?;
+    let controller = Controller::new(&LWR_IV, &config).map_err(Invalid::line)?;
     let cycle_s = scenario.cycle_s();
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, scenario.start(), cycle_s, 1);
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let external = if kind == Kind::WithResidual {
         JointVector::from(EXTERNAL_TORQUE)
     } else {
         JointVector::zeros()
     };
 
-    let mut reference = Reference::new();
-    for mut origin in scenario.origins_at(&scenario.start()) {
-        if kind != Kind::NullSpace {
-            origin.x += Vector3::from([TASK_OFFSET_M, -TASK_OFFSET_M, TASK_OFFSET_M]);
+    let mut reference = Reference::hold(controller.level_count(), scenario.start());
+    let origins = scenario.origins_at(&scenario.start());
+    for (target, origin) in reference.targets_mut().iter_mut().zip(origins) {
+        *target = origin;
+        if let (Target::Position { x, .. }, true) = (target, kind != Kind::NullSpace) {
+            *x += Vector3::from([TASK_OFFSET_M, -TASK_OFFSET_M, TASK_OFFSET_M]);
         }
-        // No more levels than the controller has: there is room.
-        let _ = reference.tasks.push(origin);
     }
-    reference.posture = scenario.start();
     if kind == Kind::NullSpace {
-        let direction = null_direction(&config, &model, &scenario.start(), &reference);
+        let direction = null_direction(&controller, &scenario.start(), &reference);
         reference.posture += direction * POSTURE_OFFSET_RAD;
     }
 
     let mut values: Vec<Vec<f64>> = Vec::new();
     let mut times = Vec::new();
-    let mut posture = PostureIntegral::new(reference.posture);
     for cycle in 0..(DURATION_S / cycle_s) as usize {
         let t_s = cycle as f64 * cycle_s;
         let truth = *plant.state();
@@ -139,24 +133,23 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
             dq: truth.dq,
             interval_s: cycle_s,
         };
-        let step = controller.step_with(&mut state, &measurement, &reference, |cycle| {
+        let step = controller.step_with(&mut state, &measurement, &reference, |_, _, data| {
             // Without external torque the residual is sampling error only; the
             // paper's V_i and V_l are for r~ = 0.
             let residual = if kind == Kind::WithResidual {
-                *cycle.residual
+                *data.residual()
             } else {
                 JointVector::zeros()
             };
-            TorqueDemand::compensating(cycle, &residual)
+            let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
+            data.demand = TorqueDemand::compensating(dynamics, hierarchy, &data.control, &residual);
         });
         let shown = functions(
             kind,
             &config,
-            &model,
-            &truth,
-            &reference,
+            controller.compliance(),
+            state.data(),
             &(step.residual - external),
-            |w| posture.at(w, cycle_s),
         );
         times.push(t_s);
         values.resize(shown.len(), Vec::new());
@@ -179,72 +172,51 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
 /// A motion of length 1 that the tasks do not notice: the null-space part of the
 /// same speed in every joint. An offset across it could never decay.
 fn null_direction(
-    config: &ControllerConfig<f64>,
-    model: &ArmModel<f64>,
+    controller: &Controller<f64>,
     start: &JointVector<f64>,
     reference: &Reference<f64>,
 ) -> JointVector<f64> {
-    let state = JointState {
+    let measurement = Measurement {
         q: *start,
         dq: JointVector::repeat(1.0),
+        interval_s: 1.0,
     };
-    let kinematics = Kinematics::new(model, &state);
-    let dynamics = Dynamics::new(model, &kinematics, &state);
-    let rows = TaskRows::new(&config.tasks, &reference.tasks, &kinematics, &state);
-    let hierarchy = Hierarchy::new(&rows, &dynamics.cholesky);
-    TaskMotion::new(&dynamics, &hierarchy, &state)
-        .null_velocity
-        .normalize()
+    let input = Input {
+        measurement: &measurement,
+        reference,
+    };
+    let mut data = Data::new();
+    controller.evaluate_until(StageName::MotionSplit, &input, &mut data);
+    data.motion.null_velocity.normalize()
 }
 
-/// The integral (51) as the controller forms it: trapezoidal rule.
-struct PostureIntegral {
-    q_d: JointVector<f64>,
-    rate: Option<JointVector<f64>>,
-}
-
-impl PostureIntegral {
-    fn new(q_d: JointVector<f64>) -> Self {
-        Self { q_d, rate: None }
-    }
-
-    fn at(&mut self, rate: &JointVector<f64>, cycle_s: f64) -> JointVector<f64> {
-        if let Some(last) = self.rate {
-            self.q_d += (rate + last) * (0.5 * cycle_s);
-        }
-        self.rate = Some(*rate);
-        self.q_d
-    }
-}
-
-/// The values of the functions of this kind at a true state.
+/// The values of the functions of this kind, from the results of a cycle that saw the
+/// true state.
 fn functions(
     kind: Kind,
-    config: &ControllerConfig<f64>,
-    model: &ArmModel<f64>,
-    state: &JointState<f64>,
-    reference: &Reference<f64>,
+    config: &ControllerConfig,
+    compliance: &Compliance<f64>,
+    data: &Data<f64>,
     residual_error: &JointVector<f64>,
-    posture: impl FnOnce(&JointVector<f64>) -> JointVector<f64>,
 ) -> Vec<f64> {
-    let kinematics = Kinematics::new(model, state);
-    let dynamics = Dynamics::new(model, &kinematics, state);
-    let rows = TaskRows::new(&config.tasks, &reference.tasks, &kinematics, state);
-    let hierarchy = Hierarchy::new(&rows, &dynamics.cholesky);
-    let motion = TaskMotion::new(&dynamics, &hierarchy, state);
-    let q_d = posture(&motion.task_velocity);
-    let levels = config.tasks.iter().enumerate().map(|(level, task)| {
-        let (kp, kd) = (task.stiffness.m11, task.damping.m11);
-        hierarchy
-            .level_range(level)
-            .map(|row| {
-                let (x, dx) = (rows.error[row], -rows.jacobian[row].dot(&state.dq));
-                0.5 * (kd / kp + (kp + 1.0) / kd) * x * x
-                    + x * dx / kp
-                    + 0.5 * (1.0 + 1.0 / kp) / kd * dx * dx
-            })
-            .sum::<f64>()
-    });
+    let (rows, dq) = (&data.rows, &data.joints.dq);
+    let levels = config
+        .tasks
+        .tasks()
+        .iter()
+        .enumerate()
+        .map(|(level, task)| {
+            let (kp, kd) = (task.gains.stiffness[0][0], task.gains.damping[0][0]);
+            data.hierarchy
+                .level_range(level)
+                .map(|row| {
+                    let (x, dx) = (rows.error[row], -rows.jacobian[row].dot(dq));
+                    0.5 * (kd / kp + (kp + 1.0) / kd) * x * x
+                        + x * dx / kp
+                        + 0.5 * (1.0 + 1.0 / kp) / kd * dx * dx
+                })
+                .sum::<f64>()
+        });
     match kind {
         Kind::Tasks => levels.collect(),
         Kind::WithResidual => {
@@ -256,10 +228,11 @@ fn functions(
             levels.take(1).map(|first| first + 0.5 * weighted).collect()
         }
         Kind::NullSpace => {
-            let n = motion.null_velocity;
-            let offset = q_d - state.q;
-            let stiffness = config.null_space.stiffness;
-            vec![0.5 * (n.dot(&(dynamics.mass_matrix * n)) + offset.dot(&(stiffness * offset)))]
+            let n = data.motion.null_velocity;
+            let offset = data.posture - data.joints.q;
+            let stiffness = compliance.stiffness;
+            let kinetic = n.dot(&(data.dynamics.mass_matrix * n));
+            vec![0.5 * (kinetic + offset.dot(&(stiffness * offset)))]
         }
     }
 }

@@ -225,8 +225,8 @@ impl Wrench {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use controller_core::arm::LWR_IV;
     use controller_core::joint::JointState;
-    use controller_core::model::LWR_IV;
 
     /// Two unit point masses on massless unit links with parallel axes, the
     /// textbook double pendulum; joints 3 to 7 carry nothing and are held by

@@ -132,7 +132,7 @@ impl Resistance<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::model::LWR_IV;
+    use controller_core::arm::LWR_IV;
 
     const ROUGH: Resistance<'_> = Resistance {
         friction: true,

@@ -1,7 +1,7 @@
 //! An arm that is not quite the one in the tables: what a controller meets
 //! after identification.
 
-use controller_core::model::ArmParameters;
+use controller_core::arm::ArmParameters;
 
 use super::noise::Rng;
 
@@ -34,7 +34,7 @@ pub fn mismatched(parameters: &ArmParameters, rng: &mut Rng) -> ArmParameters {
 mod tests {
     use super::super::noise::stream;
     use super::*;
-    use controller_core::model::{ArmModel, LWR_IV};
+    use controller_core::arm::{ArmModel, LWR_IV};
 
     #[test]
     fn errors_lie_within_their_bounds_and_the_arm_stays_possible() {

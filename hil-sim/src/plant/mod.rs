@@ -26,8 +26,8 @@ mod options;
 pub mod sensor;
 pub mod stiction;
 
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointState, JointVector};
-use controller_core::model::ArmParameters;
 
 use drive::Drive;
 use integrate::Resistance;
@@ -271,7 +271,7 @@ impl Plant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::model::LWR_IV;
+    use controller_core::arm::LWR_IV;
 
     #[test]
     fn the_ideal_plant_measures_its_true_state_and_ignores_the_seed() {

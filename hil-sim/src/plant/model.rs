@@ -9,8 +9,8 @@
 //! - the joint's axis is s = (0, sin alpha, cos alpha), through the previous
 //!   origin, so one rad/s of the joint moves this origin with s x r.
 
+use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
-use controller_core::model::{ArmParameters, LinkParameters};
 use controller_core::real::Real;
 
 /// Equations of motion of one arm, M ddq + C dq + g = torque, from its tables.
@@ -247,7 +247,7 @@ impl PlantModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::model::LWR_IV;
+    use controller_core::arm::LWR_IV;
 
     #[test]
     fn the_upright_arm_reaches_straight_up() {

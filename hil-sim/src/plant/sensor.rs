@@ -1,8 +1,8 @@
 //! Measurement of the realistic plant: encoder counts, and a velocity made from
 //! them by the core's estimator, as on a robot that reports positions only.
 
+use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::{JointState, JointVector};
-use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
 
 /// Encoder step \[rad\].
 pub const ENCODER_STEP: f64 = 2e-5;

@@ -33,8 +33,7 @@ mod rating;
 mod report;
 
 use controller_core::joint::{JointMatrix, JointState, JointVector};
-use controller_core::measurement::Reference;
-use controller_core::task::TaskReference;
+use controller_core::{Reference, Target};
 
 pub use figures::{Event, LatencyFigures, LinkFigures, QualityCycles, Rejected, StateCycles};
 pub use krc::{Krc, State};
@@ -122,7 +121,7 @@ pub struct Robot {
 struct Start {
     cycle: u64,
     posture: JointVector<f64>,
-    origins: Vec<TaskReference<f64>>,
+    origins: Vec<Target<f64>>,
 }
 
 /// What the robot sees at the start of a cycle.
@@ -177,7 +176,7 @@ impl Robot {
     pub fn new(setup: RobotSetup) -> Self {
         let scenario = &setup.scenario;
         let (arm, cycle_s, q0) = (scenario.arm(), scenario.cycle_s(), scenario.start());
-        let limit = |value: fn(&controller_core::model::LinkParameters) -> f64| {
+        let limit = |value: fn(&controller_core::arm::LinkParameters) -> f64| {
             JointVector::from_fn(|i, _| value(&arm.links[i]))
         };
         let speed_limit = limit(|link| link.speed_limit);

@@ -1,8 +1,8 @@
 //! What the robot knows of itself: kinematics and dynamics from the nominal
 //! tables. It shares no method with the controller's model.
 
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, Vector3};
-use controller_core::model::ArmParameters;
 use nalgebra::{SMatrix, SVector};
 
 use crate::experiment::angular_velocity;
@@ -111,7 +111,7 @@ impl RobotModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::model::LWR_IV;
+    use controller_core::arm::LWR_IV;
 
     const STATE: JointState<f64> = JointState {
         q: JointVector::from_array_storage(nalgebra::ArrayStorage([[

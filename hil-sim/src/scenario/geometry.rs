@@ -1,9 +1,9 @@
 //! Orientation of a link, from the DH table alone.
 
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointVector, Matrix3};
-use controller_core::model::LWR_IV;
-use controller_core::orientation::{self, Quaternion};
 use controller_core::real::Real;
+use controller_core::task::orientation::{self, Quaternion};
 
 /// Orientation of the DH frame of `link` (1..=7) in a posture \[rad\], base-plate
 /// frame. Mismatched plants have the same geometry.

@@ -1,8 +1,8 @@
 //! Points of the arm in files: by name, or on any link.
 
+use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
 use controller_core::joint::DOF;
-use controller_core::kinematics::LinkPoint;
-use controller_core::model::LWR_IV_POINTS;
+use controller_core::{Link, LinkPoint};
 use serde::Deserialize;
 
 use crate::invalid::{Invalid, in_range};
@@ -59,24 +59,17 @@ impl PointSpec {
         }
     }
 
-    /// The point. An invalid name counts as the flange.
+    /// The point. An invalid name counts as the flange, an invalid link as the last.
     #[must_use]
-    pub fn resolve(&self) -> LinkPoint<f64> {
+    pub fn resolve(&self) -> LinkPoint {
         match self {
-            Self::Name(name) => {
-                let [.., flange] = LWR_IV_POINTS;
-                let point = LWR_IV_POINTS
-                    .into_iter()
-                    .find(|point| point.name == name)
-                    .unwrap_or(flange);
-                LinkPoint {
-                    link: point.link,
-                    offset: point.offset.into(),
-                }
-            }
+            Self::Name(name) => LWR_IV_POINTS
+                .into_iter()
+                .find(|named| named.name == name)
+                .map_or(LWR_IV_FLANGE, |named| named.point),
             Self::OnLink(OnLink { link, offset_m }) => LinkPoint {
-                link: *link,
-                offset: (*offset_m).into(),
+                link: Link::from_number(*link).unwrap_or(Link::L7),
+                offset: *offset_m,
             },
         }
     }

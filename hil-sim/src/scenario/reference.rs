@@ -1,8 +1,8 @@
 //! Reference motions in files.
 
+use controller_core::Target;
 use controller_core::joint::Vector3;
-use controller_core::task::TaskReference;
-use controller_core::trajectory::{Plane, Rotation, Trajectory};
+use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
 use crate::invalid::{Invalid, in_range, positive};
@@ -106,19 +106,29 @@ impl ReferenceSpec {
         }
     }
 
-    /// Reference at time `t_s` from where the level is at the start.
+    /// Target at time `t_s` from where the level is at the start. A motion that does not
+    /// fit the level, which no valid scenario has, rests there.
     #[must_use]
-    pub fn sample(&self, origin: &TaskReference<f64>, t_s: f64) -> TaskReference<f64> {
-        let trajectory = match self {
-            Self::Hold => return *origin,
-            Self::Swing(swing) => return swing.rotation().sample(&origin.orientation, t_s),
-            Self::Move { by_m, duration_s } => Trajectory::Move {
+    pub fn sample(&self, origin: &Target<f64>, t_s: f64) -> Target<f64> {
+        match (self.trajectory(), self, origin) {
+            (Some(trajectory), _, Target::Position { x, .. }) => trajectory.sample(x, t_s),
+            (_, Self::Swing(swing), Target::Orientation { q, .. }) => {
+                swing.rotation().sample(q, t_s)
+            }
+            _ => *origin,
+        }
+    }
+
+    /// The motion of a point; none for others and for rest.
+    fn trajectory(&self) -> Option<Trajectory<f64>> {
+        match self {
+            Self::Hold | Self::Swing(_) => None,
+            Self::Move { by_m, duration_s } => Some(Trajectory::Move {
                 by: (*by_m).into(),
                 duration_s: *duration_s,
-            },
-            Self::Circle(turn) | Self::Spiral(turn) => turn.trajectory(),
-        };
-        trajectory.sample(&origin.x, t_s)
+            }),
+            Self::Circle(turn) | Self::Spiral(turn) => Some(turn.trajectory()),
+        }
     }
 }
 

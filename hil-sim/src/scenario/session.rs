@@ -3,11 +3,11 @@
 
 use bridge::guide::ReferenceSource;
 use bridge::session::SessionConfig;
-use controller_core::law::NullDamping;
-use controller_core::measurement::Reference;
-use controller_core::model::{ArmModel, LWR_IV_POINTS};
+use controller_core::Reference;
+use controller_core::arm::LWR_IV_FLANGE;
+use controller_core::law::null_space::NullDamping;
 
-use super::{PointSpec, ReferenceSpec, Scenario};
+use super::{ReferenceSpec, Scenario};
 use crate::invalid::Invalid;
 
 impl Scenario {
@@ -16,18 +16,20 @@ impl Scenario {
     /// is the inertia-shaped one: speeds come from an estimator, which is late.
     ///
     /// # Errors
-    /// Tables of the arm that cannot be.
+    /// Tasks that the core refuses.
     pub fn session_config(
         &self,
         dead_cycles: u8,
         duration_s: f64,
     ) -> Result<SessionConfig, Invalid> {
-        let model = ArmModel::new(self.arm()).map_err(Invalid::line)?;
-        let mut controller = self.controller_config(dead_cycles);
+        let mut controller = self.controller_config(dead_cycles)?;
         controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
-        let [.., flange] = LWR_IV_POINTS;
-        let flange = PointSpec::Name(flange.name.into()).resolve();
-        Ok(SessionConfig::new(&model, controller, flange, duration_s))
+        Ok(SessionConfig::new(
+            self.arm(),
+            controller,
+            LWR_IV_FLANGE,
+            duration_s,
+        ))
     }
 }
 
@@ -46,7 +48,7 @@ impl ScenarioSource {
             levels: (scenario.levels.iter())
                 .map(|level| level.reference.clone())
                 .collect(),
-            origin: Reference::new(),
+            origin: Reference::hold(scenario.levels.len(), scenario.start()),
         }
     }
 }
@@ -57,12 +59,10 @@ impl ReferenceSource for ScenarioSource {
     }
 
     fn sample(&mut self, t_s: f64) -> Option<Reference<f64>> {
-        let levels = self.levels.iter().zip(&self.origin.tasks);
-        Some(Reference {
-            tasks: levels
-                .map(|(reference, origin)| reference.sample(origin, t_s))
-                .collect(),
-            posture: self.origin.posture,
-        })
+        let mut reference = self.origin.clone();
+        for (level, target) in self.levels.iter().zip(reference.targets_mut()) {
+            *target = level.sample(target, t_s);
+        }
+        Some(reference)
     }
 }

@@ -1,13 +1,13 @@
 //! The product's law on the other side of the datagrams: signs, times and origins
 //! of both sides fit together.
 
+use controller_core::arm::{ArmModel, LWR_IV};
 use controller_core::config::ControllerConfig;
 use controller_core::controller::{Controller, ControllerState};
+use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::JointVector;
 use controller_core::law::NullDamping;
 use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
 use fri::InterfaceState;
 use hil_sim::link::{Expect, LockStep, Peer};
 use hil_sim::plant::PlantKind::{self, Ideal, Realistic};
