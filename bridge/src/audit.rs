@@ -2,11 +2,11 @@
 //! measurement, and a wrong tool, a wrong sign or a wrong arm shows there before
 //! it shows in the motion.
 
-use controller_core::dynamics::Dynamics;
-use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, zeros};
-use controller_core::kinematics::{Kinematics, LinkPoint};
-use controller_core::model::ArmModel;
+use controller_core::cycle::stages::StageName;
+use controller_core::cycle::{Data, Input};
+use controller_core::joint::{DOF, JointMatrix, JointVector, Vector3, zeros};
 use controller_core::real::Real;
+use controller_core::{Controller, LinkPoint, Measurement, Reference};
 
 /// Largest difference of gravity torques that counts as agreement \[Nm\].
 pub const GRAVITY_TOLERANCE_NM: f64 = 3.0;
@@ -81,13 +81,17 @@ pub struct Audit {
 
 impl Audit {
     /// Compares in one more posture; `flange` is the point of the robot's Jacobian.
-    pub fn compare(&mut self, model: &ArmModel<f64>, flange: &LinkPoint<f64>, robot: &RobotModel) {
-        let state = JointState {
-            q: robot.q,
-            dq: zeros(),
-        };
-        let kinematics = Kinematics::new(model, &state);
-        let dynamics = Dynamics::new(model, &kinematics, &state);
+    /// Behind a call, so that the controller's results are on the stack only meanwhile.
+    #[inline(never)]
+    pub fn compare(
+        &mut self,
+        controller: &Controller<f64>,
+        flange: &LinkPoint,
+        robot: &RobotModel,
+    ) {
+        let mut data = Data::new();
+        at_rest(controller, &robot.q, &mut data);
+        let (kinematics, dynamics) = (&data.kinematics, &data.dynamics);
         self.samples = self.samples.saturating_add(1);
 
         let gravity = judge(
@@ -116,7 +120,7 @@ impl Audit {
             self.mass_share = self.mass_share.larger(share);
         }
 
-        let motion = kinematics.point(flange);
+        let motion = kinematics.point(flange.link, &Vector3::from(flange.offset));
         let linear = kinematics.point_jacobian(flange.link, &motion).jacobian;
         let angular = kinematics.angular_jacobian(flange.link).jacobian;
         let rows = linear.iter().chain(&angular);
@@ -144,6 +148,19 @@ impl Audit {
         let fine = |agreement| matches!(agreement, Agreement::Agrees | Agreement::NotSent);
         fine(self.gravity) && fine(self.mass) && fine(self.jacobian)
     }
+}
+
+/// The controller's model at rest in a posture `q` \[rad\].
+fn at_rest(controller: &Controller<f64>, q: &JointVector<f64>, data: &mut Data<f64>) {
+    let input = Input {
+        measurement: &Measurement {
+            q: *q,
+            dq: zeros(),
+            interval_s: 0.0,
+        },
+        reference: &Reference::hold(0, *q),
+    };
+    controller.evaluate_until(StageName::Dynamics, &input, data);
 }
 
 fn worse(one: Agreement, other: Agreement) -> Agreement {
@@ -177,30 +194,37 @@ fn judge(theirs: &[f64], ours: &[f64], tolerance: f64) -> Agreement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::joint::Vector3;
-    use controller_core::model::LWR_IV;
+    use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+    use controller_core::{Axes, ControllerConfig, Link, NullSpace, Task, TaskGains, TaskSet};
 
     /// The controller's own model as a robot would send it, and an audit of it
     /// after `change`.
     fn audit(change: impl FnOnce(&mut RobotModel)) -> Audit {
-        let model = ArmModel::new(&LWR_IV).expect("the built-in arm");
-        let offset = Vector3::from([0.0, 0.0, LWR_IV.flange]);
-        let flange = LinkPoint { link: 7, offset };
+        let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
+        let config = ControllerConfig {
+            tasks: TaskSet::new(&[flange]).expect("a task"),
+            null_space: NullSpace::diagonal([10.0; 7], [0.03; 7]),
+            observer_gain: [50.0; 7],
+            cycle_s: 0.002,
+            dead_cycles: 0,
+        };
+        let controller = Controller::new(&LWR_IV, &config).expect("the built-in arm");
         let q = JointVector::from([0.1, 0.6, -0.3, -1.3, 0.4, 0.9, 0.2]);
-        let kinematics = Kinematics::new(&model, &JointState { q, dq: zeros() });
-        let dynamics = Dynamics::new(&model, &kinematics, &JointState { q, dq: zeros() });
-        let motion = kinematics.point(&flange);
-        let [x, y, z] = kinematics.point_jacobian(7, &motion).jacobian;
-        let [rx, ry, rz] = kinematics.angular_jacobian(7).jacobian;
+        let mut data = Data::new();
+        at_rest(&controller, &q, &mut data);
+        let kinematics = &data.kinematics;
+        let motion = kinematics.point(Link::L7, &Vector3::from(LWR_IV_FLANGE.offset));
+        let [x, y, z] = kinematics.point_jacobian(Link::L7, &motion).jacobian;
+        let [rx, ry, rz] = kinematics.angular_jacobian(Link::L7).jacobian;
         let mut robot = RobotModel {
             q,
-            mass_matrix: dynamics.mass_matrix,
-            gravity: dynamics.gravity,
+            mass_matrix: data.dynamics.mass_matrix,
+            gravity: data.dynamics.gravity,
             jacobian: [x, y, z, rx, ry, rz],
         };
         change(&mut robot);
         let mut audit = Audit::default();
-        audit.compare(&model, &flange, &robot);
+        audit.compare(&controller, &LWR_IV_FLANGE, &robot);
         audit
     }
 

@@ -4,8 +4,8 @@
 //! So the bridge knows, also where commands are lost or late, what the robot has
 //! used since the last measurement, and can tell the observer.
 
-use controller_core::config::DEAD_CYCLES_MAX;
 use controller_core::joint::{JointVector, zeros};
+use controller_core::ranges::DEAD_CYCLES_MAX;
 
 /// Commands remembered. One that was overtaken by more than this is too old to
 /// matter.

@@ -18,13 +18,12 @@
 mod config;
 mod report;
 
-use controller_core::config::ConfigError;
-use controller_core::controller::{Controller, ControllerState};
+use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::{DOF, JointState, JointVector, zeros};
-use controller_core::measurement::{INTERVAL_FACTORS, Measurement, Reference};
+use controller_core::ranges::INTERVAL_FACTORS;
 use controller_core::real::Real;
-use controller_core::trajectory::quintic;
-use controller_core::velocity::{CORNER_HZ, VelocityEstimator};
+use controller_core::task::trajectory::quintic;
+use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, State};
 
 use crate::audit::Audit;
 use crate::guide::{Guide, ReferenceSource};
@@ -41,7 +40,7 @@ pub use crate::wire::{ANSWER_LEN, RobotState};
 pub struct Session {
     config: SessionConfig,
     controller: Option<Controller<f64>>,
-    state: ControllerState<f64>,
+    state: State<f64>,
     velocity: VelocityEstimator<f64>,
     sent: SentTorques,
     guide: Guide,
@@ -75,7 +74,7 @@ impl Session {
         Self {
             config,
             controller: None,
-            state: ControllerState::new(),
+            state: State::new(),
             velocity: VelocityEstimator::new(CORNER_HZ),
             sent: SentTorques::new(),
             guide,
@@ -109,7 +108,7 @@ impl Session {
 
     /// The controller's latched fault.
     #[must_use]
-    pub fn fault(&self) -> Option<controller_core::fault::Fault> {
+    pub fn fault(&self) -> Option<Fault> {
         self.state.fault()
     }
 
@@ -194,7 +193,7 @@ impl Session {
 
         let holding = self.hold.is_some() && incoming.robot.takes_torque();
         let outgoing = if self.phase.is_in_command() || holding || self.config.dry {
-            self.state.applied(&(acted + self.robot_part));
+            self.state.set_applied_torque(&(acted + self.robot_part));
             self.control(&incoming, joints, interval_s, lost, source)
         } else {
             Outgoing::mirror(&incoming)
@@ -224,9 +223,9 @@ impl Session {
             return Ok(());
         }
         self.config.controller.cycle_s = period;
-        let controller = Controller::new(&self.config.model, &self.config.controller)?;
+        let controller = Controller::new(&self.config.arm, &self.config.controller)?;
         self.cycle_s = period;
-        self.guide.rest(&controller.rest(&incoming.q));
+        self.guide.rest(&controller.rest_reference(&incoming.q));
         self.controller = Some(controller);
         Ok(())
     }
@@ -312,7 +311,7 @@ impl Session {
         let Some(controller) = &self.controller else {
             return;
         };
-        let rest = controller.rest(&incoming.q);
+        let rest = controller.rest_reference(&incoming.q);
         self.guide.rest(&rest);
         self.state.reset();
         self.in_command = 0;
@@ -343,10 +342,11 @@ impl Session {
 
     /// Compares models at first, then now and then.
     fn watch_model(&mut self, incoming: &Incoming) {
-        if self.cycle % AUDIT_EVERY == 1 {
-            let model = &self.config.model;
+        if let Some(controller) = &self.controller
+            && self.cycle % AUDIT_EVERY == 1
+        {
             self.audit
-                .compare(model, &self.config.flange, &incoming.model());
+                .compare(controller, &self.config.flange, &incoming.model());
         }
     }
 
@@ -374,11 +374,9 @@ impl Session {
         }
         if self.phase == Phase::Holding && self.link.is_broken() {
             // The arm is where it drifted to: hold it there.
-            let posture = self.guide.reference().posture;
-            self.guide.brake_from(&Reference {
-                posture,
-                ..controller.place(&joints)
-            });
+            let mut place = controller.moving_reference(&joints);
+            place.posture = self.guide.reference().posture;
+            self.guide.brake_from(&place);
         }
         let reference = self.guide.advance(wanted.as_ref(), interval_s);
 
@@ -386,7 +384,7 @@ impl Session {
         let [_, longest] = INTERVAL_FACTORS;
         let gap = interval_s > longest * self.cycle_s;
         if gap {
-            self.state.skip();
+            self.state.resume_after_gap();
         }
         let measurement = Measurement {
             q: joints.q,

@@ -1,7 +1,7 @@
 //! Between the session and the datagrams: the one place where binary32 becomes
 //! binary64 and back.
 
-use controller_core::controller::Step;
+use controller_core::Step;
 use controller_core::joint::{DOF, JointMatrix, JointVector};
 use fri::{
     Command, ControlScheme, Error, Flags, Header, InterfaceState, MeasurementPacket, Quality,

@@ -3,48 +3,50 @@
 use bridge::audit::Agreement;
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
-use controller_core::config::ControllerConfig;
-use controller_core::dynamics::Dynamics;
-use controller_core::joint::{JointState, JointVector, Vector3, diagonal};
-use controller_core::kinematics::{Kinematics, LinkPoint};
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::Reference;
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::task::{Axes, Task};
+use controller_core::arm::dynamics::Dynamics;
+use controller_core::arm::kinematics::Kinematics;
+use controller_core::arm::{ArmModel, LWR_IV, LWR_IV_FLANGE};
+use controller_core::fault::FaultKind;
+use controller_core::joint::{JointState, JointVector};
+use controller_core::law::null_space::NullDamping;
+use controller_core::{
+    Axes, ControllerConfig, Link, NullSpace, Reference, Target, Task, TaskGains, TaskSet,
+};
 use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};
 
 const START: [f64; 7] = [0.0, 0.61, 0.0, -1.40, 0.35, 1.05, 0.0];
 
-fn flange() -> LinkPoint<f64> {
-    LinkPoint {
-        link: 7,
-        offset: Vector3::from([0.0, 0.0, LWR_IV.flange]),
-    }
+fn config(duration_s: f64) -> SessionConfig {
+    let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
+    config_of(&[flange], duration_s)
 }
 
-fn config(duration_s: f64) -> SessionConfig {
+/// With the orientation of the last link below the position of the flange.
+fn two_kinds() -> SessionConfig {
+    let gains = TaskGains::uniform(400.0, 40.0);
+    let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, gains);
+    let facing = Task::orientation(Link::L7, Axes::XYZ, gains);
+    config_of(&[flange, facing], 60.0)
+}
+
+fn config_of(tasks: &[Task], duration_s: f64) -> SessionConfig {
     let controller = ControllerConfig {
-        tasks: [Task::uniform(flange(), Axes::XYZ, 400.0, 40.0)]
-            .into_iter()
-            .collect(),
+        tasks: TaskSet::new(tasks).expect("tasks that can be"),
         null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
             damping: NullDamping::Inertia(10.0),
-            posture: Posture::Constant,
+            ..NullSpace::diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2], [1.0; 7])
         },
-        observer_gain: JointVector::repeat(50.0),
+        observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    let model = ArmModel::new(&LWR_IV).expect("the built-in arm");
-    SessionConfig::new(&model, controller, flange(), duration_s)
+    SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, duration_s)
 }
 
-/// Moves the flange up by 5 mm at once: whoever follows it without a transition
-/// makes a jump.
-struct Shifted(Reference<f64>);
+/// What a test wants, from the place of rest on.
+struct Wanted(Reference<f64>);
 
-impl ReferenceSource for Shifted {
+impl ReferenceSource for Wanted {
     fn start(&mut self, origin: &Reference<f64>) {
         self.0.clone_from(origin);
     }
@@ -58,7 +60,7 @@ impl ReferenceSource for Shifted {
 struct Robot {
     measurement: Measurement,
     session: Session,
-    source: Shifted,
+    source: Wanted,
 }
 
 impl Robot {
@@ -69,8 +71,9 @@ impl Robot {
             q,
             dq: JointVector::zeros(),
         };
-        let kinematics = Kinematics::new(&model, &state);
-        let dynamics = Dynamics::new(&model, &kinematics, &state);
+        let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
+        kinematics.update(&model, &state);
+        dynamics.update(&model, &kinematics, &state);
         let gravity: [f64; 7] = dynamics.gravity.into();
         let mut measurement = Measurement {
             state: InterfaceState::Monitor,
@@ -94,7 +97,7 @@ impl Robot {
         Self {
             measurement,
             session,
-            source: Shifted(Reference::new()),
+            source: Wanted(Reference::hold(0, [0.0; 7])),
         }
     }
 
@@ -166,7 +169,10 @@ fn the_torque_grows_from_zero_and_contains_no_gravity() {
         // The robot stands still whatever it is sent: its joints seem to be held
         // against the wanted motion, which begins with a step of 5 mm.
         if cycle == 600 {
-            robot.source.0.tasks[0].x.z += 0.005;
+            let Target::Position { x, .. } = &mut robot.source.0.targets_mut()[0] else {
+                panic!("the flange has a position");
+            };
+            x.z += 0.005;
         }
         let answer = robot.cycle().expect("an answer");
         assert_eq!(answer.joint_position, robot.measurement.joint_position);
@@ -341,6 +347,89 @@ fn a_fault_of_the_controller_gives_the_arm_to_the_robot() {
     assert_eq!(robot.session.stop_reason(), Some(StopReason::Fault));
     let fault = robot.session.fault().expect("a fault").to_string();
     assert!(fault.contains("speed [rad/s] of joint 7"), "{fault}");
+}
+
+/// Each reference that the controller cannot mean ends the session in the cycle in which
+/// it arrives: gravity torque alone, that is nothing on the wire, then the robot's own
+/// stiffness. With the arm at rest at the reference or joining it, all the same.
+#[test]
+fn a_target_of_another_kind_is_a_fault_and_never_followed() {
+    let far = Target::position([0.0, 0.0, 1.0]);
+    let facing = Target::orientation([0.0, 1.0, 0.0, 0.0]);
+    let cases: [(&[Target<f64>], FaultKind, &str); 6] = [
+        (
+            &[facing, facing],
+            FaultKind::WrongTarget,
+            "level 1 is an orientation; allowed hold or a position",
+        ),
+        (
+            &[far, far],
+            FaultKind::WrongTarget,
+            "level 2 is a position; allowed hold or an orientation",
+        ),
+        (&[Target::Hold, far], FaultKind::WrongTarget, "level 2"),
+        (
+            &[far, Target::orientation([0.3, 0.0, 0.0, 0.0])],
+            FaultKind::Implausible,
+            "squared quaternion norm of level 2",
+        ),
+        (
+            &[far],
+            FaultKind::Implausible,
+            "number of targets is 1; allowed 2 to 2",
+        ),
+        (
+            &[Target::position([f64::NAN; 3]), facing],
+            FaultKind::Implausible,
+            "target of level 1",
+        ),
+    ];
+    for (targets, kind, part) in cases {
+        // 600: following for 0.2 s. 900: held before, and joining with it.
+        for (cycles, held) in [(600, false), (900, true)] {
+            let mut robot = Robot::new(Session::new(two_kinds()));
+            robot.enter();
+            robot.cycles(cycles);
+            if held {
+                robot.measurement.header.counter = robot.measurement.header.counter.wrapping_add(6);
+                while robot.cycle().is_some() && robot.session.phase() == Phase::Holding {}
+                robot.cycles(5);
+            }
+            assert_eq!(robot.session.phase(), Phase::Moving, "{part}");
+            let before = robot.session.reference().targets()[0];
+            robot.source.0 = Reference::from_targets(targets, START).expect("not more than levels");
+            let answer = robot.cycle().expect("an answer");
+            assert_eq!(answer.joint_torque, [0.0; 7], "{part}");
+            let fault = robot.session.fault().expect(part);
+            assert_eq!(fault.kind, kind, "{part}");
+            assert!(fault.to_string().contains(part), "{fault}");
+            let finite = kind == FaultKind::WrongTarget;
+            assert!(
+                !finite || robot.session.reference().targets()[0] == before,
+                "{part}"
+            );
+            let answer = robot.cycles(300);
+            assert_eq!(answer.joint_torque, [0.0; 7], "{part}");
+            assert_eq!(answer.joint_stiffness, [1000.0; 7], "{part}");
+            assert_eq!(answer.joint_position, robot.measurement.joint_position);
+            assert_eq!(robot.session.stop_reason(), Some(StopReason::Fault));
+        }
+    }
+}
+
+#[test]
+fn a_level_that_holds_stays_where_it_came_to_rest() {
+    let mut robot = Robot::new(Session::new(two_kinds()));
+    robot.enter();
+    robot.cycles(600);
+    let [place, facing] = *robot.session.reference().targets() else {
+        panic!("two levels");
+    };
+    robot.source.0 = Reference::hold(2, START);
+    robot.cycles(300);
+    assert_eq!(robot.session.phase(), Phase::Moving);
+    assert!(robot.session.fault().is_none());
+    assert_eq!(robot.session.reference().targets(), [place, facing]);
 }
 
 #[test]

@@ -4,13 +4,9 @@ use std::fmt;
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
-use controller_core::config::ControllerConfig;
-use controller_core::joint::{JointVector, Vector3, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::Reference;
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::task::{Axes, Task};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::law::null_space::NullDamping;
+use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
 use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};
 
 /// A session is begun anew after so many datagrams: a fault or a stop ends one.
@@ -83,23 +79,18 @@ impl ReferenceSource for Rest {
 }
 
 fn session() -> Session {
-    let offset = Vector3::from([0.0, 0.0, LWR_IV.flange]);
-    let flange = LinkPoint { link: 7, offset };
+    let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
     let controller = ControllerConfig {
-        tasks: [Task::uniform(flange, Axes::XYZ, 400.0, 40.0)]
-            .into_iter()
-            .collect(),
+        tasks: TaskSet::new(&[flange]).expect("a task that can be"),
         null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
             damping: NullDamping::Inertia(10.0),
-            posture: Posture::Constant,
+            ..NullSpace::diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2], [1.0; 7])
         },
-        observer_gain: JointVector::repeat(50.0),
+        observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    let model = ArmModel::new(&LWR_IV).expect("the built-in arm");
-    Session::new(SessionConfig::new(&model, controller, flange, 1e6))
+    Session::new(SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6))
 }
 
 fn measurement() -> Measurement {
@@ -123,7 +114,8 @@ fn measurement() -> Measurement {
 pub fn run(count: u64, seed: u64) -> Result<Table, String> {
     let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
     let mut table = Table::default();
-    let (mut robot, mut session, mut rest) = (measurement(), session(), Rest(Reference::new()));
+    let (mut robot, mut session, mut rest) =
+        (measurement(), session(), Rest(Reference::hold(0, [0.0; 7])));
     for number in 0..count {
         if number % SESSION == 0 {
             table.sessions += 1;

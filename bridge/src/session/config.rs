@@ -1,8 +1,7 @@
 //! What a session is made of.
 
-use controller_core::config::ControllerConfig;
-use controller_core::kinematics::LinkPoint;
-use controller_core::model::ArmModel;
+use controller_core::arm::ArmParameters;
+use controller_core::{ControllerConfig, LinkPoint};
 
 use crate::guide::GuideTimes;
 
@@ -20,11 +19,11 @@ pub enum RobotAdds {
 #[derive(Clone, Debug)]
 pub struct SessionConfig {
     /// The arm that the controller believes in.
-    pub model: ArmModel<f64>,
+    pub arm: ArmParameters,
     /// Tasks and gains. The cycle comes from the robot.
-    pub controller: ControllerConfig<f64>,
+    pub controller: ControllerConfig,
     /// The flange, for the audit of the robot's Jacobian.
-    pub flange: LinkPoint<f64>,
+    pub flange: LinkPoint,
     /// What must not be sent.
     pub robot_adds: RobotAdds,
     /// Between the first command state and time 0 of the motion; the posture is held.
@@ -50,13 +49,13 @@ impl SessionConfig {
     /// With the times and counts of a robot on a wired network.
     #[must_use]
     pub fn new(
-        model: &ArmModel<f64>,
-        controller: ControllerConfig<f64>,
-        flange: LinkPoint<f64>,
+        arm: &ArmParameters,
+        controller: ControllerConfig,
+        flange: LinkPoint,
         duration_s: f64,
     ) -> Self {
         Self {
-            model: *model,
+            arm: *arm,
             controller,
             flange,
             robot_adds: RobotAdds::Gravity,

@@ -1,8 +1,7 @@
 //! What a session says of itself.
 
-use controller_core::config::ConfigError;
-use controller_core::controller::Step;
 use controller_core::joint::{JointState, JointVector};
+use controller_core::{ConfigError, Step};
 
 use super::RobotState;
 
