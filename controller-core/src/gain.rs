@@ -85,7 +85,8 @@ pub(crate) fn validate<const N: usize>(
             continue;
         }
         let pivot = factor[k][k];
-        if !(pivot > 1e-12 * scale) {
+        let definite = pivot > 1e-12 * scale;
+        if !definite {
             return Err(ConfigError::GainDefinite {
                 gain,
                 level,

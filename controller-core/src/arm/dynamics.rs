@@ -71,7 +71,7 @@ impl<T: Real> Dynamics<T> {
         let mut motion = [base; DOF];
         let mut last = base;
         for i in 0..DOF {
-            last = last.to_child(&transform(i), joints.dq[i]);
+            last = last.in_child(&transform(i), joints.dq[i]);
             motion[i] = last;
         }
 
@@ -84,7 +84,7 @@ impl<T: Real> Dynamics<T> {
         let mut group = Moments::zero();
         for i in (0..DOF).rev() {
             if i < DOF - 1 {
-                group = group.to_parent(&transform(i + 1));
+                group = group.in_parent(&transform(i + 1));
             }
             group.add_link(&arm.links[i], &motion[i]);
             let [gx, gy, _] = motion[i].gravity;
@@ -94,7 +94,7 @@ impl<T: Real> Dynamics<T> {
             mass_matrix[(i, i)] = wrench.rows[2][0];
             coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
-                wrench = wrench.to_parent(&transform(j + 1));
+                wrench = wrench.in_parent(&transform(j + 1));
                 let [x, y, z] = &wrench.rows;
                 let AxisRate {
                     turn: [a, b],

@@ -23,7 +23,7 @@ pub(crate) struct Motion<T: Real> {
 impl<T: Real> Motion<T> {
     /// The same in the child's joint frame, whose joint turns at `speed` \[rad/s\].
     #[inline(always)]
-    pub fn to_child(&self, transform: &JointTransform<'_, T>, speed: T) -> Self {
+    pub fn in_child(&self, transform: &JointTransform<'_, T>, speed: T) -> Self {
         let mut next = by_exchange!(self, carried, transform);
         next.spin[2] += speed;
         next
@@ -40,9 +40,9 @@ impl<T: Real> Motion<T> {
             velocity[2] -= wy * a;
         }
         Self {
-            spin: transform.to_child::<EXCHANGE>(self.spin),
-            velocity: transform.to_child::<EXCHANGE>(velocity),
-            gravity: transform.to_child::<EXCHANGE>(self.gravity),
+            spin: transform.in_child::<EXCHANGE>(self.spin),
+            velocity: transform.in_child::<EXCHANGE>(velocity),
+            gravity: transform.in_child::<EXCHANGE>(self.gravity),
         }
     }
 }
@@ -120,22 +120,22 @@ impl<T: Real> Moments<T> {
 
     /// The same about the origin of the parent's joint frame, in its axes.
     #[inline(always)]
-    pub fn to_parent(&self, transform: &JointTransform<'_, T>) -> Self {
+    pub fn in_parent(&self, transform: &JointTransform<'_, T>) -> Self {
         by_exchange!(self, carried, transform)
     }
 
     #[inline(always)]
     fn carried<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
         // Rows turn with dp, entries within a row with p.
-        let turned = transform.to_parent::<Lanes<T>, EXCHANGE>(self.velocity_moment);
+        let turned = transform.in_parent::<Lanes<T>, EXCHANGE>(self.velocity_moment);
         let row = |row: Lanes<T>| {
-            let [x, y, z] = transform.to_parent::<T, EXCHANGE>([row[0], row[1], row[2]]);
+            let [x, y, z] = transform.in_parent::<T, EXCHANGE>([row[0], row[1], row[2]]);
             Lanes::from([x, y, z, row[3]])
         };
         let mut moved = Self {
             mass: self.mass,
-            first: transform.to_parent::<T, EXCHANGE>(self.first),
-            second: self.second.to_parent::<EXCHANGE>(transform),
+            first: transform.in_parent::<T, EXCHANGE>(self.first),
+            second: self.second.in_parent::<EXCHANGE>(transform),
             velocity_moment: turned.map(row),
         };
         let LinkModel { a, d, .. } = *transform.link;
@@ -179,7 +179,7 @@ impl<T: Real> Moments<T> {
 
 impl<T: Real> Symmetric<T> {
     #[inline(always)]
-    fn to_parent<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
+    fn in_parent<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
         let (sine, cosine) = (transform.sine, transform.cosine);
         let x = self.xx * cosine - self.xy * sine;
         let y = self.xy * cosine - self.yy * sine;
@@ -309,13 +309,13 @@ impl<T: Real> JointWrench<T> {
 
     /// The same about the origin of the parent's joint frame, in its axes.
     #[inline(always)]
-    pub fn to_parent(&self, transform: &JointTransform<'_, T>) -> Self {
+    pub fn in_parent(&self, transform: &JointTransform<'_, T>) -> Self {
         by_exchange!(self, carried, transform)
     }
 
     #[inline(always)]
     fn carried<const EXCHANGE: u8>(&self, transform: &JointTransform<'_, T>) -> Self {
-        let mut rows = transform.to_parent::<Lanes<T>, EXCHANGE>(self.rows);
+        let mut rows = transform.in_parent::<Lanes<T>, EXCHANGE>(self.rows);
         // The forces act at (a, 0, d).
         let LinkModel { a, d, .. } = *transform.link;
         if d != T::ZERO {
@@ -332,7 +332,7 @@ impl<T: Real> JointWrench<T> {
         }
         Self {
             rows,
-            transposed_rate: transform.to_parent::<T, EXCHANGE>(self.transposed_rate),
+            transposed_rate: transform.in_parent::<T, EXCHANGE>(self.transposed_rate),
         }
     }
 }

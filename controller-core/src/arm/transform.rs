@@ -102,13 +102,13 @@ pub(crate) use by_exchange;
 impl<T: Real> JointTransform<'_, T> {
     /// A vector of the outer joint frame in axes of the inner one.
     #[inline(always)]
-    pub fn to_parent<E: Entry<T>, const EXCHANGE: u8>(&self, v: [E; 3]) -> [E; 3] {
+    pub fn in_parent<E: Entry<T>, const EXCHANGE: u8>(&self, v: [E; 3]) -> [E; 3] {
         rotate_about_x::<T, E, EXCHANGE>(rotate_about_z(v, self.sine, self.cosine), self.link)
     }
 
     /// A vector of the inner joint frame in axes of the outer one.
     #[inline(always)]
-    pub fn to_child<const EXCHANGE: u8>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub fn in_child<const EXCHANGE: u8>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let (sine, cosine) = (self.link.sin_alpha, self.link.cos_alpha);
         let back = match EXCHANGE {
             AxisExchange::NONE => [x, y, z],

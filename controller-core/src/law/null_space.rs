@@ -21,6 +21,7 @@ pub struct NullSpace {
 
 /// Damping of the null space.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put it in")]
 pub enum NullDamping {
     /// A constant D \[Nms/rad\] by rows, symmetric positive definite.
     Joint([[f64; DOF]; DOF]),

@@ -125,11 +125,11 @@ fn set_mass_matrix<T: Real>(
         velocity_moment.set_column(1, &group.column(0));
         mass_matrix[(i, i)] = velocity_moment.m12 - velocity_moment.m21;
         for j in (0..i).rev() {
-            velocity_moment = to_parent(&arm.links[j], posture[j + 1], &velocity_moment);
+            velocity_moment = in_parent(&arm.links[j], posture[j + 1], &velocity_moment);
             mass_matrix[(i, j)] = velocity_moment.m12 - velocity_moment.m21;
         }
         if i > 0 {
-            group = to_parent(&arm.links[i - 1], posture[i], &group);
+            group = in_parent(&arm.links[i - 1], posture[i], &group);
         }
     }
 }
@@ -137,7 +137,7 @@ fn set_mass_matrix<T: Real>(
 /// A X A^T with A from the frame of a joint to that of the joint before it: turned
 /// about z by its `angle` \[rad\], then the twist and lengths of the `link` between.
 #[inline(never)]
-fn to_parent<T: Real>(link: &LinkModel<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
+fn in_parent<T: Real>(link: &LinkModel<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
     let (sine, cosine) = T::from_f64(angle).sine_cosine();
     let (zero, one) = (T::ZERO, T::ONE);
     let (sin_alpha, cos_alpha) = (link.sin_alpha, link.cos_alpha);
