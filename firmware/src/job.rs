@@ -1,17 +1,14 @@
 //! The two experiments that the target runs, as constants: the same as the
 //! built-in scenarios of that name, which a test checks.
 
-use controller_core::config::{ConfigError, ControllerConfig};
-use controller_core::controller::Controller;
-use controller_core::joint::{DOF, JointVector, Vector3, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::Reference;
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::joint::{DOF, JointVector};
 use controller_core::real::Real;
-use controller_core::task::{Axes, Task};
-use controller_core::trajectory::{Plane, Trajectory};
-use heapless::Vec;
+use controller_core::task::trajectory::{Plane, Trajectory};
+use controller_core::{
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, NullSpace, Reference, Target,
+    Task, TaskGains, TaskSet,
+};
 
 /// Nominal cycle of both \[s\].
 pub const CYCLE_S: f64 = 0.002;
@@ -72,32 +69,40 @@ pub struct Job<T: Real> {
     circle: Trajectory<T>,
 }
 
+/// Gains of both levels.
+const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
+
+/// Flange, wrist.
+const LEVELS: [Task; 2] = [
+    Task::position(LWR_IV_FLANGE, Axes::XYZ, GAINS),
+    Task::position(WRIST, Axes::XY, GAINS),
+];
+
+const WRIST: LinkPoint = LinkPoint {
+    link: Link::L5,
+    offset: [0.0; 3],
+};
+
 /// The configuration of an experiment, made in the caller's place for it.
-#[must_use]
+///
+/// # Errors
+/// Never for these constants.
 #[inline(never)]
-pub fn config<T: Real>(kind: JobKind) -> ControllerConfig<T> {
-    let task = |link, offset: [f64; 3], axes| {
-        let offset = Vector3::from(offset.map(T::from_f64));
-        Task::uniform(LinkPoint { link, offset }, axes, 400.0, 40.0)
+pub fn config(kind: JobKind) -> Result<ControllerConfig, ConfigError> {
+    let tasks: &[Task] = match (kind, &LEVELS) {
+        (JobKind::TwoLevel, [flange, _]) => core::slice::from_ref(flange),
+        (JobKind::Case1, both) => both,
     };
-    let mut config = ControllerConfig {
-        tasks: Vec::new(),
-        null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
-            posture: Posture::Constant,
-        },
-        observer_gain: JointVector::from([T::from_f64(50.0); DOF]),
-        cycle_s: T::from_f64(CYCLE_S),
+    Ok(ControllerConfig {
+        tasks: TaskSet::new(tasks)?,
+        null_space: NullSpace::diagonal(
+            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
+            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
+        ),
+        observer_gain: [50.0; DOF],
+        cycle_s: CYCLE_S,
         dead_cycles: 0,
-    };
-    // There is a place for every level.
-    let flange = task(7, [0.0, 0.0, LWR_IV.flange], Axes::XYZ);
-    let _ = config.tasks.push(flange);
-    if kind == JobKind::Case1 {
-        let _ = config.tasks.push(task(5, [0.0; 3], Axes::XY));
-    }
-    config
+    })
 }
 
 /// The controller of an experiment, from the arm's tables on.
@@ -105,11 +110,11 @@ pub fn config<T: Real>(kind: JobKind) -> ControllerConfig<T> {
 /// # Errors
 /// Never for these constants.
 pub fn controller<T: Real>(kind: JobKind) -> Result<Controller<T>, ConfigError> {
-    // The model stays in the result that brought it: taken out, it would lie on the
-    // stack twice.
-    match &ArmModel::new(&LWR_IV) {
-        Ok(model) => Controller::new(model, &config(kind)),
-        Err(error) => Err((*error).into()),
+    // The configuration stays in the result that brought it: taken out, it would lie on
+    // the stack twice.
+    match &config(kind) {
+        Ok(config) => Controller::new(&LWR_IV, config),
+        Err(error) => Err(*error),
     }
 }
 
@@ -123,7 +128,7 @@ impl<T: Real> Job<T> {
         let start = kind.start_deg().map(f64::to_radians).map(T::from_f64);
         let (radius_m, period_s) = kind.flange_circle();
         Ok(Self {
-            origin: controller.rest(&JointVector::from(start)),
+            origin: controller.rest_reference(&JointVector::from(start)),
             circle: Trajectory::Turn {
                 plane: Plane::Yz,
                 radius_m: T::from_f64(radius_m),
@@ -144,8 +149,10 @@ impl<T: Real> Job<T> {
     #[must_use]
     pub fn moved(&self, origin: &Reference<T>, t_s: T) -> Reference<T> {
         let mut reference = origin.clone();
-        if let Some(flange) = reference.tasks.first_mut() {
-            *flange = self.circle.sample(&flange.x, t_s);
+        if let Some(flange) = reference.targets_mut().first_mut()
+            && let Target::Position { x, .. } = *flange
+        {
+            *flange = self.circle.sample(&x, t_s);
         }
         reference
     }

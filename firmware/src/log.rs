@@ -5,10 +5,9 @@
 //! number, bytes per number (8 or 4) and the number of cycles as u16, and then per
 //! cycle q, dq, h and the torque: 22 numbers, little endian.
 
-use controller_core::controller::ControllerState;
 use controller_core::joint::{DOF, JointVector};
-use controller_core::measurement::Measurement;
 use controller_core::real::Real;
+use controller_core::{Measurement, State};
 
 use crate::job::{Job, JobKind};
 
@@ -168,7 +167,7 @@ pub fn replay<T: Number>(
     cycles: u16,
     mut next: impl FnMut() -> Option<[u8; CYCLE_BYTES]>,
 ) -> Comparison {
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let mut result = Comparison::default();
     for cycle in 0..cycles {
         let Some(bytes) = next() else { break };

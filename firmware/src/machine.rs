@@ -1,10 +1,9 @@
 //! The controller with everything a board needs around it: one call per cycle.
 
-use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::cycle::record::Recorder;
 use controller_core::joint::{JointVector, zeros};
-use controller_core::measurement::{Measurement, Reference};
 use controller_core::real::Real;
-use controller_core::record::Recorder;
+use controller_core::{Controller, Measurement, Reference, State, Step};
 use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::guard::{Cause, Guard};
@@ -15,7 +14,7 @@ pub const RECORDED: usize = 64;
 /// Controller, its state, guard and recorder.
 pub struct Machine<T: Real, E, D, H> {
     controller: Controller<T>,
-    state: ControllerState<T>,
+    state: State<T>,
     recorder: Recorder<T, RECORDED>,
     guard: Guard<E, D, H>,
 }
@@ -37,7 +36,7 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
     pub fn new(controller: Controller<T>, guard: Guard<E, D, H>) -> Self {
         Self {
             controller,
-            state: ControllerState::new(),
+            state: State::new(),
             recorder: Recorder::new(),
             guard,
         }
@@ -63,7 +62,7 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
                 step,
             },
             Err(cause) => {
-                self.state.applied(&zeros());
+                self.state.set_applied_torque(&zeros());
                 Output {
                     torque: zeros(),
                     stopped: Some(cause),
@@ -76,8 +75,8 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
     /// A cycle without a measurement: the drives go off, the observer starts anew with
     /// the next one.
     pub fn blind(&mut self) {
-        self.state.skip();
-        self.state.applied(&zeros());
+        self.state.resume_after_gap();
+        self.state.set_applied_torque(&zeros());
         // Not clean: an error whatever the emergency stop says, and the outputs safe.
         let _ = self.guard.cycle(false);
     }

@@ -3,9 +3,8 @@
 
 use std::io::{self, Write};
 
-use controller_core::controller::ControllerState;
 use controller_core::joint::JointState;
-use controller_core::measurement::Measurement;
+use controller_core::{Measurement, State};
 use hil_sim::plant::{Plant, PlantKind, PlantOptions};
 use hil_sim::scenario::Scenario;
 
@@ -31,7 +30,7 @@ pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) ->
         SEED,
         PlantOptions::default(),
     );
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let header = Header {
         job: kind,
         bytes: T::BYTES as u8,

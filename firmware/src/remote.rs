@@ -4,9 +4,10 @@
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
 use bridge::transport::DatagramLink;
-use controller_core::config::ConfigError;
-use controller_core::law::NullDamping;
-use controller_core::measurement::Reference;
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::joint::zeros;
+use controller_core::law::null_space::NullDamping;
+use controller_core::{ConfigError, Reference};
 use embedded_hal::digital::{InputPin, OutputPin};
 
 use crate::guard::{Cause, Guard};
@@ -26,17 +27,14 @@ pub const DURATION_S: f64 = 20.0;
 /// # Errors
 /// Never for the constants of a job.
 pub fn config(kind: JobKind) -> Result<SessionConfig, ConfigError> {
-    let job = Job::<f64>::new(kind)?;
-    let mut controller = job::config(kind);
+    let mut controller = job::config(kind)?;
     controller.null_space.damping = NullDamping::Inertia(DAMPING_RATE);
-    let flange = controller.tasks.first().map(|task| task.point);
-    // The first level of every job is the flange.
-    let flange = flange.unwrap_or(controller_core::kinematics::LinkPoint {
-        link: 7,
-        offset: controller_core::joint::zeros(),
-    });
-    let model = job.controller.model();
-    Ok(SessionConfig::new(model, controller, flange, DURATION_S))
+    Ok(SessionConfig::new(
+        &LWR_IV,
+        controller,
+        LWR_IV_FLANGE,
+        DURATION_S,
+    ))
 }
 
 /// The motion of a job, from wherever the arm is.
@@ -52,9 +50,10 @@ impl JobSource {
     /// # Errors
     /// Never for the constants of a job.
     pub fn new(kind: JobKind) -> Result<Self, ConfigError> {
+        let job = Job::new(kind)?;
         Ok(Self {
-            job: Job::new(kind)?,
-            origin: Reference::new(),
+            origin: Reference::hold(job.controller.level_count(), zeros()),
+            job,
         })
     }
 }

@@ -1,42 +1,21 @@
-//! What a cycle costs, and each of its parts, over the inputs of [`workload`].
+//! What a cycle costs, and each of its stages, over the inputs of [`workload`].
 //!
 //! Arguments and results pass `black_box` between the two readings of the clock,
 //! so that nothing is computed before or after them, or not at all.
 
 use core::hint::black_box;
 
-use controller_core::controller::{Controller, ControllerState, Step};
-use controller_core::dynamics::Dynamics;
-use controller_core::hierarchy::Hierarchy;
-use controller_core::joint::{DOF, JointState, JointVector, zeros};
-use controller_core::kinematics::Kinematics;
-use controller_core::law::{Command, Cycle, TaskMotion, TorqueDemand};
-use controller_core::limits::TorqueCommand;
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::observer::Observer;
+use controller_core::cycle::record::Recorder;
+use controller_core::cycle::stages::{Run, STAGE_COUNT};
+use controller_core::cycle::{Data, Input};
 use controller_core::real::Real;
-use controller_core::record::Recorder;
-use controller_core::task::TaskRows;
+use controller_core::{Controller, Measurement, Reference, State, Step};
 
 use crate::log::Number;
 use crate::workload;
 
 /// Cycles in the recorder of the measurement.
 pub const RECORDED: usize = 64;
-
-/// The parts of a cycle, in its order.
-pub const STAGES: [&str; 10] = [
-    "kinematics",
-    "dynamics",
-    "observer",
-    "task rows",
-    "hierarchy",
-    "motion",
-    "command",
-    "demand",
-    "limits",
-    "observer input",
-];
 
 /// A free-running counter, and how much of it an instruction is.
 pub trait Clock {
@@ -76,10 +55,10 @@ impl Extremes {
 /// What all inputs together gave.
 #[derive(Clone, Copy, Debug)]
 pub struct Survey {
-    /// Full cycle: checks, law, limits, observer and record.
+    /// Full cycle: checks, all stages and record.
     pub cycle: Extremes,
-    /// The parts alone, as in [`STAGES`].
-    pub stages: [Extremes; STAGES.len()],
+    /// The stages alone, in the order of [`Controller::STAGES`].
+    pub stages: [Extremes; STAGE_COUNT],
     /// Cycles with a fault, with a torque that was cut, with a row not resolved.
     pub faults: u32,
     /// See `faults`.
@@ -96,7 +75,7 @@ pub struct Rig<T: Real> {
     /// The controller.
     pub controller: Controller<T>,
     /// Its state.
-    pub state: ControllerState<T>,
+    pub state: State<T>,
     /// The last cycles.
     pub recorder: Recorder<T, RECORDED>,
 }
@@ -107,7 +86,7 @@ impl<T: Real> Rig<T> {
     pub fn new(controller: Controller<T>) -> Self {
         Self {
             controller,
-            state: ControllerState::new(),
+            state: State::new(),
             recorder: Recorder::new(),
         }
     }
@@ -142,23 +121,24 @@ pub fn survey<T: Number>(
     cycle: impl Fn(&mut Rig<T>, &Measurement<T>, &Reference<T>) -> Step<T>,
 ) -> Survey {
     let empty = overhead(clock);
-    let net = |start: u32, end: u32| {
-        let count = clock.instructions(end.wrapping_sub(start));
-        count.saturating_sub(empty)
-    };
     let mut survey = Survey {
         cycle: Extremes::NONE,
-        stages: [Extremes::NONE; STAGES.len()],
+        stages: [Extremes::NONE; STAGE_COUNT],
         faults: 0,
         saturated: 0,
         deficient: 0,
         checksum: 0xcbf2_9ce4_8422_2325,
     };
     // The first cycle of all only takes the momentum.
-    let mut observer = Observer::new();
-    observer.update(&zeros(), T::ONE, &zeros());
+    let mut data = Data::new();
     let (measurement, reference) = workload::input(&rig.controller, 0);
     let _ = cycle(rig, &measurement, &reference);
+    let input = Input {
+        measurement: &measurement,
+        reference: &reference,
+    };
+    rig.controller.evaluate(&input, &mut data);
+    let empty_stage = instructions(clock, |_, _, _| {}, &rig.controller, &input, &mut data);
     for index in 0..workload::COUNT {
         let (measurement, reference) = workload::input(&rig.controller, index);
         let start = clock.ticks();
@@ -168,7 +148,8 @@ pub fn survey<T: Number>(
             black_box(&reference),
         );
         let step = black_box(&step);
-        survey.cycle.add(net(start, clock.ticks()), index);
+        let count = clock.instructions(clock.ticks().wrapping_sub(start));
+        survey.cycle.add(count.saturating_sub(empty), index);
 
         survey.faults += u32::from(step.status.fault.is_some());
         survey.saturated += u32::from(step.status.saturated.any());
@@ -177,116 +158,33 @@ pub fn survey<T: Number>(
             survey.checksum = (survey.checksum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
 
-        let joints = JointState {
-            q: measurement.q,
-            dq: measurement.dq,
+        let input = Input {
+            measurement: &measurement,
+            reference: &reference,
         };
-        let costs = stage_costs(&rig.controller, &mut observer, &joints, &reference, clock);
-        for (stage, (start, end)) in survey.stages.iter_mut().zip(costs) {
-            stage.add(net(start, end), index);
+        for (cost, (_, run)) in survey.stages.iter_mut().zip(Controller::<T>::STAGES) {
+            let count = instructions(clock, run, &rig.controller, &input, &mut data);
+            cost.add(count.saturating_sub(empty_stage), index);
         }
     }
     survey
 }
 
-/// One part between two readings: its result is a new variable, its times another.
-macro_rules! timed {
-    ($clock:ident, $times:ident, $function:path, $($argument:expr),+) => {{
-        #[inline(never)]
-        fn call<R>(work: impl FnOnce() -> R) -> R {
-            work()
-        }
-        let start = $clock.ticks();
-        let result = call(|| $function($(black_box($argument)),+));
-        black_box(&result);
-        // There are as many places as parts.
-        let _ = $times.push((start, $clock.ticks()));
-        result
-    }};
-}
-
-fn stage_costs<T: Real>(
-    controller: &Controller<T>,
-    observer: &mut Observer<T>,
-    joints: &JointState<T>,
-    reference: &Reference<T>,
+/// Instructions of a stage and of what surrounds it, the same for every one.
+#[inline(never)]
+fn instructions<T: Real>(
     clock: &impl Clock,
-) -> heapless::Vec<(u32, u32), { STAGES.len() }> {
-    let mut times = heapless::Vec::new();
-    let model = controller.model();
-    let gain = JointVector::from([T::from_f64(50.0); DOF]);
-    let interval_s = T::from_f64(crate::job::CYCLE_S);
-    let null_space = controller.null_space();
-    let posture = &reference.posture;
-
-    let kinematics = timed!(clock, times, Kinematics::new, model, joints);
-    let mut dynamics = Dynamics::empty();
-    timed!(
-        clock,
-        times,
-        Dynamics::update,
-        &mut dynamics,
-        model,
-        &kinematics,
-        joints
+    run: Run<T>,
+    controller: &Controller<T>,
+    input: &Input<'_, T>,
+    data: &mut Data<T>,
+) -> u32 {
+    let start = clock.ticks();
+    black_box(run)(
+        black_box(controller),
+        black_box(input),
+        black_box(&mut *data),
     );
-    let residual = timed!(
-        clock,
-        times,
-        Observer::update,
-        &mut *observer,
-        &gain,
-        interval_s,
-        &dynamics.momentum
-    );
-    let mut rows = TaskRows::empty();
-    timed!(
-        clock,
-        times,
-        TaskRows::stack,
-        &mut rows,
-        controller.tasks(),
-        &reference.tasks,
-        &kinematics,
-        joints
-    );
-    let hierarchy = timed!(clock, times, Hierarchy::new, &rows, &dynamics.cholesky);
-    let motion = timed!(clock, times, TaskMotion::new, &dynamics, &hierarchy, joints);
-    let command = timed!(
-        clock,
-        times,
-        Command::new,
-        null_space,
-        &dynamics,
-        &rows,
-        &hierarchy,
-        &motion,
-        joints,
-        posture
-    );
-    let cycle = Cycle {
-        state: joints,
-        kinematics: &kinematics,
-        dynamics: &dynamics,
-        rows: &rows,
-        hierarchy: &hierarchy,
-        motion: &motion,
-        posture,
-        command: &command,
-        residual: &residual,
-    };
-    let demand = timed!(clock, times, TorqueDemand::hierarchical, &cycle);
-    let limit = model.torque_limit();
-    let limited = timed!(clock, times, TorqueCommand::new, &demand, limit);
-    let torque = limited.map_or(zeros(), |command| command.torque);
-    timed!(
-        clock,
-        times,
-        Observer::apply,
-        &mut *observer,
-        &dynamics,
-        joints,
-        &torque
-    );
-    times
+    black_box(data);
+    clock.instructions(clock.ticks().wrapping_sub(start))
 }

@@ -1,12 +1,11 @@
 //! Inputs of the timing table: random ones within the limits of the arm, and
 //! those that look hardest. The same numbers on host and target.
 
-use controller_core::controller::Controller;
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector, Vector3};
-use controller_core::measurement::{Measurement, POSITION_MARGIN, Reference, SPEED_FACTOR};
-use controller_core::model::LWR_IV;
+use controller_core::ranges::{POSITION_MARGIN, SPEED_FACTOR};
 use controller_core::real::Real;
-use controller_core::task::TaskReference;
+use controller_core::{Controller, Measurement, Reference, Target};
 
 use crate::job::CYCLE_S;
 
@@ -145,24 +144,24 @@ pub fn input<T: Real>(controller: &Controller<T>, index: u32) -> (Measurement<T>
     if kind == Kind::Random && number % 2 == 0 {
         // Every other one follows its reference closely: no torque is cut.
         let Measurement { q, dq, .. } = measurement;
-        let mut reference = controller.place(&JointState { q, dq });
-        reference.posture = q;
+        let reference = controller.moving_reference(&JointState { q, dq });
         return (measurement, reference);
     }
-    let mut reference = Reference::new();
-    reference.posture = JointVector::from(random.vector::<T, DOF>(2.0));
+    let posture = random.vector::<T, DOF>(2.0);
+    let mut reference = Reference::hold(controller.level_count(), posture);
     let reach = match kind {
         Kind::Saturated => 1e6,
         Kind::Tiny => 1e-310,
         Kind::Zero => 0.0,
         _ => 1.0,
     };
-    for _ in controller.tasks() {
-        let mut target = TaskReference::rest(Vector3::from(random.vector::<T, 3>(reach)));
-        target.dx = Vector3::from(random.vector::<T, 3>(reach));
-        target.ddx = Vector3::from(random.vector::<T, 3>(10.0 * reach));
-        // There is a place for every task that a controller can have.
-        let _ = reference.tasks.push(target);
+    for target in reference.targets_mut() {
+        // Drawn in this order.
+        *target = Target::Position {
+            x: Vector3::from(random.vector::<T, 3>(reach)),
+            dx: Vector3::from(random.vector::<T, 3>(reach)),
+            ddx: Vector3::from(random.vector::<T, 3>(10.0 * reach)),
+        };
     }
     (measurement, reference)
 }

@@ -1,7 +1,7 @@
 //! Emergency stop, drive enable and heartbeat on pins that check every call.
 
+use controller_core::Measurement;
 use controller_core::joint::JointVector;
-use controller_core::measurement::Measurement;
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 use firmware::guard::{Cause, Guard};

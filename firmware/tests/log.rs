@@ -1,6 +1,6 @@
 //! The log holds every bit, and the replay finds the one that differs.
 
-use controller_core::measurement::Measurement;
+use controller_core::Measurement;
 use firmware::job::{Job, JobKind};
 use firmware::log::{CYCLE_BYTES, Entry, HEADER_BYTES, Header, NUMBERS, Number, replay};
 use firmware::recording::write_run;

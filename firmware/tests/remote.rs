@@ -8,9 +8,9 @@ use std::rc::Rc;
 
 use bridge::session::Phase;
 use bridge::transport::DatagramLink;
-use controller_core::dynamics::Dynamics;
-use controller_core::joint::{JointState, JointVector};
-use controller_core::kinematics::Kinematics;
+use controller_core::cycle::stages::StageName;
+use controller_core::cycle::{Data, Input};
+use controller_core::joint::zeros;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use firmware::guard::{Cause, Guard};
 use firmware::job::{CYCLE_S, Job, JobKind};
@@ -167,12 +167,18 @@ impl Rig {
 fn standing(kind: JobKind) -> Measurement {
     let job = Job::<f64>::new(kind).expect("a valid job");
     let start = kind.start_deg().map(|q| q.to_radians() as f32);
-    let state = JointState {
+    let measured = controller_core::Measurement {
         q: start.map(f64::from).into(),
-        dq: JointVector::zeros(),
+        dq: zeros(),
+        interval_s: CYCLE_S,
     };
-    let model = job.controller.model();
-    let dynamics = Dynamics::new(model, &Kinematics::new(model, &state), &state);
+    let input = Input {
+        measurement: &measured,
+        reference: &job.origin,
+    };
+    let mut data = Data::new();
+    (job.controller).evaluate_until(StageName::Dynamics, &input, &mut data);
+    let dynamics = data.dynamics;
     let mut measurement = Measurement {
         state: InterfaceState::Monitor,
         quality: Quality::Perfect,

@@ -7,8 +7,8 @@
 
 use core::cell::Cell;
 
+use controller_core::Measurement;
 use controller_core::joint::zeros;
-use controller_core::measurement::Measurement;
 use controller_core::real::Real;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};

@@ -4,9 +4,7 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use controller_core::config::ConfigError;
-use controller_core::controller::{Controller, Step};
-use controller_core::measurement::{Measurement, Reference};
+use controller_core::{ConfigError, Controller, Measurement, Reference, Step};
 use firmware::job::{self, JobKind};
 use firmware::stages::{Rig, Survey};
 use firmware::workload;
@@ -83,13 +81,13 @@ mod target {
     use core::hint::black_box;
     use core::mem::size_of;
 
-    use controller_core::controller::ControllerState;
-    use controller_core::model::ArmModel;
-    use controller_core::record::CycleRecord;
+    use controller_core::State;
+    use controller_core::arm::ArmModel;
+    use controller_core::cycle::record::CycleRecord;
     use cortex_m_rt::entry;
     use firmware::log::Number;
     use firmware::mps2::{self, Counter, high_water, instructions};
-    use firmware::stages::{Clock, Extremes, STAGES, overhead, survey};
+    use firmware::stages::{Clock, Extremes, overhead, survey};
     use firmware::workload::Kind;
 
     use super::*;
@@ -157,8 +155,8 @@ mod target {
             );
         };
         print("cycle", &found.cycle);
-        for (stage, cost) in STAGES.iter().zip(&found.stages) {
-            print(stage, cost);
+        for ((stage, _), cost) in Controller::<T>::STAGES.iter().zip(&found.stages) {
+            print(stage.text(), cost);
         }
         let (measurement, _) = workload::input(&rig.controller, found.cycle.at);
         let (q, dq) = (measurement.q, measurement.dq);
@@ -196,7 +194,7 @@ mod target {
             T::NAME,
             size_of::<ArmModel<T>>(),
             size_of::<Controller<T>>(),
-            size_of::<ControllerState<T>>(),
+            size_of::<State<T>>(),
             size_of::<Step<T>>(),
             size_of::<CycleRecord<T>>()
         );

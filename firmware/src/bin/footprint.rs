@@ -8,46 +8,42 @@
 mod core_of {
     use core::hint::black_box;
 
-    use controller_core::config::{ConfigError, ControllerConfig};
-    use controller_core::controller::{Controller, ControllerState};
-    use controller_core::measurement::{Measurement, Reference};
-    use controller_core::model::{ArmModel, LWR_IV};
+    use controller_core::arm::LWR_IV;
+    use controller_core::cycle::record::Recorder;
+    use controller_core::joint::zeros;
     use controller_core::real::Real;
-    use controller_core::record::Recorder;
+    use controller_core::{
+        ConfigError, Controller, ControllerConfig, Measurement, NullSpace, Reference, State, Task,
+        TaskSet,
+    };
 
     /// Everything that a cycle needs, with nothing known to the compiler: whatever
     /// the configuration asks for has to be there.
     pub fn run<T: Real>(
-        config: &ControllerConfig<T>,
+        config: &ControllerConfig,
         measurement: &Measurement<T>,
         reference: &Reference<T>,
     ) -> Result<(), ConfigError> {
-        let model = ArmModel::new(black_box(&LWR_IV))?;
-        let controller = Controller::new(&model, black_box(config))?;
-        let mut state = ControllerState::new();
+        let controller = Controller::new(black_box(&LWR_IV), black_box(config))?;
+        let mut state = State::new();
         let mut recorder = Recorder::<T, 4>::new();
         let step = controller.step(&mut state, black_box(measurement), black_box(reference));
         recorder.push(measurement, &step);
-        state.applied(black_box(&step.torque));
-        state.skip();
+        state.set_applied_torque(black_box(&step.torque));
+        state.resume_after_gap();
         state.reset();
         black_box((&state, &recorder));
         Ok(())
     }
 
     /// Bytes that no initialiser had to write: the caller's data are not the core's.
-    pub fn all<T: Real>() {
-        use controller_core::joint::zeros;
-        use controller_core::law::{NullDamping, NullSpace, Posture};
+    pub fn all<T: Real>() -> Result<(), ConfigError> {
+        const NO_TASKS: &[Task] = &[];
         let config = ControllerConfig {
-            tasks: heapless::Vec::new(),
-            null_space: NullSpace {
-                stiffness: zeros(),
-                damping: NullDamping::Joint(zeros()),
-                posture: Posture::Constant,
-            },
-            observer_gain: zeros(),
-            cycle_s: T::ZERO,
+            tasks: TaskSet::new(black_box(NO_TASKS))?,
+            null_space: NullSpace::diagonal([0.0; 7], [0.0; 7]),
+            observer_gain: [0.0; 7],
+            cycle_s: 0.0,
             dead_cycles: 0,
         };
         let measurement = Measurement {
@@ -55,19 +51,19 @@ mod core_of {
             dq: zeros(),
             interval_s: T::ZERO,
         };
-        let _ = black_box(run(
+        run(
             black_box(&config),
             black_box(&measurement),
-            black_box(&Reference::new()),
-        ));
+            black_box(&Reference::hold(0, zeros())),
+        )
     }
 }
 
 fn everything() {
     #[cfg(feature = "footprint-f64")]
-    core_of::all::<f64>();
+    let _ = core::hint::black_box(core_of::all::<f64>());
     #[cfg(feature = "footprint-f32")]
-    core_of::all::<f32>();
+    let _ = core::hint::black_box(core_of::all::<f32>());
 }
 
 #[cfg(not(target_os = "none"))]

@@ -7,40 +7,47 @@
 
 use core::hint::black_box;
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::joint::Vector3;
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::record::Recorder;
-use controller_core::task::{Axes, TaskReference};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::cycle::record::Recorder;
+use controller_core::{
+    Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
+    TaskSet,
+};
 use firmware::job::{self, JobKind};
 use firmware::log::Number;
+
+/// A level on a link with so many rows.
+const fn level(link: Link, rows: usize) -> Task {
+    let point = LinkPoint {
+        link,
+        ..LWR_IV_FLANGE
+    };
+    let axes = match rows {
+        1 => Axes::X,
+        2 => Axes::XY,
+        _ => Axes::XYZ,
+    };
+    Task::position(point, axes, TaskGains::uniform(400.0, 40.0))
+}
 
 /// Whether levels on flange, elbow and wrist make a controller with `ROWS` rows whose
 /// cycle is clean, everything unknown to the compiler but the number of rows.
 fn exercise<T: Number, const ROWS: usize>() -> bool {
-    let Ok(model) = ArmModel::<T>::new(black_box(&LWR_IV)) else {
+    // Three rows on the flange, three on the elbow, the rest on the wrist.
+    let levels = [
+        level(Link::L7, ROWS),
+        level(Link::L3, ROWS.saturating_sub(3)),
+        level(Link::L5, ROWS.saturating_sub(6)),
+    ];
+    let used = levels.get(..ROWS.div_ceil(3)).unwrap_or_default();
+    let (Ok(mut config), Ok(tasks)) = (
+        job::config(JobKind::TwoLevel),
+        TaskSet::new(black_box(used)),
+    ) else {
         return false;
     };
-    let mut config: ControllerConfig<T> = job::config(JobKind::TwoLevel);
-    let mut flange = config.tasks.first().copied();
-    config.tasks.clear();
-    for level in 0..ROWS.div_ceil(3) {
-        let Some(task) = flange.as_mut() else {
-            return false;
-        };
-        // Three rows on the flange, three on the elbow, the rest on the wrist.
-        task.point.link = 7 - 2 * (2 * level % 3);
-        let rows = ROWS - 3 * level;
-        task.axes = Axes {
-            xyz: [true, rows > 1, rows > 2],
-        };
-        if config.tasks.push(*task).is_err() {
-            return false;
-        }
-    }
-    let Ok(controller) = Controller::new(&model, black_box(&config)) else {
+    config.tasks = tasks;
+    let Ok(controller) = Controller::<T>::new(black_box(&LWR_IV), black_box(&config)) else {
         return false;
     };
     let q = JobKind::TwoLevel.start_deg().map(f64::to_radians);
@@ -49,24 +56,18 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
         dq: [T::HALF; 7].into(),
         interval_s: T::from_f64(job::CYCLE_S),
     });
-    let mut reference = Reference::new();
-    reference.posture = measurement.q;
-    let target = TaskReference::rest(Vector3::from([T::HALF; 3]));
-    for _ in controller.tasks() {
-        if reference.tasks.push(target).is_err() {
-            return false;
-        }
-    }
+    let mut reference = Reference::hold(controller.level_count(), measurement.q);
+    reference.targets_mut().fill(Target::position([T::HALF; 3]));
     let reference = black_box(reference);
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let mut recorder = Recorder::<T, 4>::new();
     let step = controller.step(&mut state, &measurement, &reference);
     recorder.push(&measurement, &step);
-    state.applied(black_box(&step.torque));
-    state.skip();
+    state.set_applied_torque(black_box(&step.torque));
+    state.resume_after_gap();
     state.reset();
-    black_box(&recorder);
-    step.status.fault.is_none() && controller.tasks().len() == ROWS.div_ceil(3)
+    black_box((&recorder, &controller.rest_reference(&measurement.q)));
+    step.status.fault.is_none() && controller.level_count() == ROWS.div_ceil(3)
 }
 
 /// Both precisions, every number of rows.
