@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::flops;
 use crate::host::{Counts, Peer};
 use crate::tools::Trouble;
 
@@ -24,7 +23,7 @@ pub struct Figures {
     /// Flash of constructor, cycle and record alone \[bytes\], by precision.
     #[serde(default)]
     pub core_flash: BTreeMap<String, u64>,
-    /// Instructions on the host, by controller and part.
+    /// Instructions on the host, by controller and stage.
     #[serde(default)]
     pub host: Counts,
     /// The same law by other libraries, on the host.
@@ -43,7 +42,7 @@ pub struct Controller {
     pub cycle: Cost,
     /// Where the full cycle is longest.
     pub worst_input: String,
-    /// The parts, in order.
+    /// The stages, in order.
     pub stages: Vec<Stage>,
     /// Inputs with a cut torque, with an unresolved row.
     pub saturated: u64,
@@ -68,7 +67,7 @@ pub struct Cost {
     pub worst: String,
 }
 
-/// A part of the cycle.
+/// A stage of the cycle.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Stage {
     /// Name.
@@ -76,9 +75,6 @@ pub struct Stage {
     /// Instructions.
     #[serde(flatten)]
     pub cost: Cost,
-    /// Floating-point operations that it needs, [`crate::flops`].
-    #[serde(default)]
-    pub flops: u64,
 }
 
 /// Seen by painting, and bound from the code.
@@ -143,10 +139,7 @@ impl Figures {
                 let controller = self.controllers.last_mut()?;
                 match name.join(" ") {
                     name if name == "cycle" => controller.cycle = cost,
-                    name => {
-                        let flops = flops::of(&name, &controller.job, &controller.precision)?;
-                        controller.stages.push(Stage { name, cost, flops });
-                    }
+                    name => controller.stages.push(Stage { name, cost }),
                 }
             }
             ["worst", _, _, ref input @ ..] => {
@@ -166,6 +159,18 @@ impl Figures {
             _ => return None,
         }
         Some(())
+    }
+
+    /// Size of a type \[bytes\].
+    pub fn size(&self, precision: &str, name: &str) -> Option<u64> {
+        self.sizes.get(precision)?.get(name).copied()
+    }
+
+    /// What a cycle needs to run besides controller, input and output: state and stack
+    /// together \[bytes\].
+    pub fn working_memory(&self, controller: &Controller) -> Option<u64> {
+        let state = self.size(&controller.precision, "state")?;
+        Some(state + controller.stack.cycle_bound?)
     }
 
     /// Every figure that must not grow, by name.

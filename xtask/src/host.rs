@@ -76,8 +76,6 @@ fn parse(text: &str) -> Result<Counts, Trouble> {
             };
             let stage = match stage {
                 "step" => "cycle".into(),
-                "observer_update" => "observer".into(),
-                "observer_apply" => "observer input".into(),
                 stage => stage.replace('_', " "),
             };
             Some((format!("{job} {precision}"), stage, count.parse().ok()?))
@@ -96,7 +94,7 @@ mod tests {
     #[test]
     fn cases_and_stages_get_the_names_of_the_table() {
         let text =
-            "2-levels-f64 step 9000\n3-levels-f32 task_rows 12\n3-levels-f32 observer_apply 7\n";
+            "2-levels-f64 step 9000\n3-levels-f32 task_rows 12\n3-levels-f32 observer_input 7\n";
         let counts = parse(text).expect("counts");
         assert_eq!(counts["two-level f64"]["cycle"], 9000);
         assert_eq!(counts["case-1 f32"]["task rows"], 12);

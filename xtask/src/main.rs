@@ -8,7 +8,6 @@ mod arm;
 mod bench;
 mod board;
 mod figures;
-mod flops;
 mod fri;
 mod fri_check;
 mod host;
