@@ -29,7 +29,13 @@ if [ -z "$cbindgen" ]; then
     cbindgen=$build/tools/bin/cbindgen
   fi
 fi
-header() { "$cbindgen" controller-capi --quiet --config "$crate/cbindgen.toml" --output "$1"; }
+# header FILE: types and functions by cbindgen, names for numbers by the crate itself.
+header() {
+  "$cbindgen" controller-capi --quiet --config "$crate/cbindgen.toml" --output "$out/types.h"
+  cargo run -p controller-capi --example numbers --quiet > "$out/numbers.h"
+  grep -qx '/\* names for numbers \*/' "$out/types.h" || fail "cbindgen.toml has lost the marker"
+  sed -e "\\,^/\* names for numbers \*/\$,{r $out/numbers.h" -e 'd}' "$out/types.h" > "$1"
+}
 
 if [ "${1:-}" = header ]; then
   [ -n "$cbindgen" ] || fail "cbindgen $cbindgen_version is not installed and could not be"

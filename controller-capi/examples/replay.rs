@@ -1,14 +1,12 @@
 //! The sequence of `c/replay.c` through the core in Rust: the same lines.
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::joint::{JointVector, Vector3, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::measurement::Measurement;
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::joint::JointVector;
 use controller_core::real::Real;
-use controller_core::task::{Axes, Task};
+use controller_core::{
+    Axes, Controller, ControllerConfig, Link, LinkPoint, Measurement, NullSpace, State, Target,
+    Task, TaskGains, TaskSet,
+};
 use std::fmt::Write;
 use stratum::Scalar;
 
@@ -46,35 +44,47 @@ fn hash_bits(hash: u64, bits: u64) -> u64 {
 
 fn replay() -> Result<String, Box<dyn std::error::Error>> {
     let vector = |values: [f64; 7]| JointVector::from(values.map(Scalar::from_f64));
-    let model = ArmModel::<Scalar>::new(&LWR_IV)?;
-    let point = |link, z| LinkPoint {
-        link,
-        offset: Vector3::from([0.0, 0.0, z].map(Scalar::from_f64)),
+    let gains = TaskGains::uniform(400.0, 40.0);
+    let elbow = LinkPoint {
+        link: Link::L3,
+        offset: [0.0; 3],
     };
-    let flange = Task::uniform(point(7, LWR_IV.flange), Axes::XYZ, 400.0, 40.0);
-    let elbow = Task::uniform(point(3, 0.0), Axes::XY, 400.0, 40.0);
     let config = ControllerConfig {
-        tasks: [flange, elbow].into_iter().collect(),
-        null_space: NullSpace {
-            stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            damping: NullDamping::Joint(diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03])),
-            posture: Posture::Constant,
-        },
-        observer_gain: vector([50.0; 7]),
-        cycle_s: Scalar::from_f64(0.002),
+        tasks: TaskSet::new(&[
+            Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
+            Task::position(elbow, Axes::XY, gains),
+            Task::orientation(Link::L7, Axes::Z, gains),
+        ])?,
+        null_space: NullSpace::diagonal(
+            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
+            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
+        ),
+        observer_gain: [50.0; 7],
+        cycle_s: 0.002,
         dead_cycles: 0,
     };
-    let controller = Controller::new(&model, &config)?;
-    let mut state = ControllerState::new();
+    let controller = Controller::<Scalar>::new(&LWR_IV, &config)?;
+    let mut state = State::new();
     let mut hash = 0xcbf2_9ce4_8422_2325;
     let mut saturated = 0;
     let bits = Scalar::default().to_bits().count_zeros();
     let mut lines = format!("stratum {} f{bits}\n", env!("CARGO_PKG_VERSION"));
     for cycle in 0..CYCLES {
         let (q, dq) = measure(cycle);
-        let mut reference = controller.rest(&vector(q));
-        let z = &mut reference.tasks[0].x.z;
-        *z = Scalar::from_f64(z.to_f64() + wave(64 * cycle) / 2_097_152.0);
+        let mut reference = controller.rest_reference(&vector(q));
+        if let [
+            Target::Position { x, .. },
+            elbow,
+            Target::Orientation { q, w, .. },
+        ] = reference.targets_mut()
+        {
+            x.z = Scalar::from_f64(x.z.to_f64() + wave(64 * cycle) / 2_097_152.0);
+            if (2000..2500).contains(&cycle) {
+                *elbow = Target::Hold;
+            }
+            q[1] = Scalar::from_f64(q[1].to_f64() + wave(32 * cycle) / 1_048_576.0);
+            w.z = Scalar::from_f64(wave(64 * cycle) / 1_048_576.0);
+        }
         reference.posture = vector(CENTRE);
         if cycle == 3010 {
             state.reset();
@@ -86,8 +96,11 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
             interval_s: Scalar::from_f64(interval_s),
         };
         let step = controller.step(&mut state, &measurement, &reference);
-        state.applied(&step.gravity);
-        let fault = step.status.fault.map_or(0, |fault| fault.kind as u64);
+        state.set_applied_torque(&step.gravity);
+        let fault = step
+            .status
+            .fault
+            .map_or(0, |fault| u64::from(fault.kind.number()));
         saturated += u32::from(step.status.saturated.any());
         let numbers = step.torque.iter().chain(&step.residual);
         let numbers = numbers.map(|number| number.to_f64().to_bits());

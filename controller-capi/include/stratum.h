@@ -5,8 +5,8 @@
  * All storage is the caller's; nothing is allocated. Every function answers a
  * code and checks its pointers for null and alignment, and storage for having been
  * initialised. What it cannot check: other pointers point to objects of their
- * type, joint arrays have 7 entries, and no interrupt handler or thread uses a
- * storage during a call that changes it. A controller may be read by several at once.
+ * type, joint arrays have STRATUM_JOINTS entries, and no interrupt handler or thread
+ * uses a storage during a call that changes it. A controller may be read by several at once.
  * Storage that was never initialised is recognised by its first 8 bytes: static
  * storage always. Joints, levels and links count from 1; SI units.
  */
@@ -17,11 +17,151 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// What a function answers: STRATUM_OK, an argument error (1 to 31), a latched fault (32
+// to 95) or a configuration error (from 128). The numbers are stable.
+typedef int32_t StratumResult;
+enum {
+  // Done.
+  STRATUM_OK = 0,
+  // A pointer is null.
+  STRATUM_ERROR_NULL = 1,
+  // A pointer is not aligned for what it points to.
+  STRATUM_ERROR_MISALIGNED = 2,
+  // The storage holds no controller or state of this library: call its init function
+  // first.
+  STRATUM_ERROR_UNINITIALISED = 3,
+  // A number is infinite, NaN or too large for the precision of the library.
+  STRATUM_ERROR_NON_FINITE = 4,
+  // The controller has no such level; levels count from 1.
+  STRATUM_ERROR_LEVEL = 5,
+  // The norm of a desired orientation is outside 0.5 to 2.
+  STRATUM_ERROR_ORIENTATION = 6,
+  // State and controller differ in their number of levels.
+  STRATUM_ERROR_MISMATCH = 7,
+  // Header and library are of different versions of the interface.
+  STRATUM_ERROR_ABI = 8,
+  // No arm of this name is built in; there is lwr_iv.
+  STRATUM_ERROR_PRESET = 9,
+  // The text buffer has size 0.
+  STRATUM_ERROR_TEXT_SIZE = 10,
+  // A reference that is none: its kind does not exist, reserved is not 0, or a hold with
+  // numbers other than 0.
+  STRATUM_ERROR_TARGET = 11,
+  // A position for a level that tracks an orientation, or the other way round.
+  STRATUM_ERROR_WRONG_TARGET = 12,
+  // Fault: a measurement or reference that cannot be true; the arm is held by gravity
+  // torque.
+  STRATUM_FAULT_IMPLAUSIBLE = 32,
+  // Fault: the law gave a torque that is not finite; the arm is held by gravity torque.
+  STRATUM_FAULT_NON_FINITE_TORQUE = 33,
+  // Fault: a target of another kind than the task of its level; the arm is held by
+  // gravity torque.
+  STRATUM_FAULT_WRONG_TARGET = 34,
+  // Settings: refused, see stratum_settings_text.
+  STRATUM_CONFIG_OTHER = 128,
+  // Settings: level_count is not 1 to 7.
+  STRATUM_CONFIG_LEVELS = 129,
+  // Settings: a choice (task, axes, damping, posture) that does not exist.
+  STRATUM_CONFIG_CHOICE = 130,
+  // Settings: the levels have more than 7 rows together.
+  STRATUM_CONFIG_ROWS = 131,
+  // Settings: a level has no axis.
+  STRATUM_CONFIG_NO_AXIS = 132,
+  // Settings: a level is on a link that does not exist.
+  STRATUM_CONFIG_POINT_LINK = 133,
+  // Settings: a point offset is not finite or too far away.
+  STRATUM_CONFIG_POINT_OFFSET = 134,
+  // Settings: an entry of a gain matrix is not finite or too large.
+  STRATUM_CONFIG_GAIN_VALUE = 135,
+  // Settings: a gain matrix is not symmetric.
+  STRATUM_CONFIG_GAIN_SYMMETRY = 136,
+  // Settings: a gain matrix is not positive definite.
+  STRATUM_CONFIG_GAIN_DEFINITE = 137,
+  // Settings: an observer gain is not above 0 or not finite.
+  STRATUM_CONFIG_OBSERVER_GAIN = 138,
+  // Settings: the nominal cycle is outside its range.
+  STRATUM_CONFIG_CYCLE = 139,
+  // Settings: too many cycles of dead time.
+  STRATUM_CONFIG_DEAD_CYCLES = 140,
+  // Settings: the rate of an inertia-shaped damping is not above 0 or not finite.
+  STRATUM_CONFIG_INERTIA_DAMPING = 141,
+  // Settings: the null-space damping is too strong for the cycle.
+  STRATUM_CONFIG_DAMPING = 142,
+  // Arm: a parameter is not finite.
+  STRATUM_CONFIG_ARM_NON_FINITE = 160,
+  // Arm: a parameter that must be above 0 is not.
+  STRATUM_CONFIG_ARM_NOT_POSITIVE = 161,
+  // Arm: an inertia that no body can have.
+  STRATUM_CONFIG_ARM_INERTIA = 162,
+};
+
+// What limited or degraded a cycle whose torque is valid, for logs: StratumStatus has a
+// field for each. The numbers are stable and none is a StratumResult.
+typedef int32_t StratumLimit;
+enum {
+  // Limit: torque of a joint cut to its limit.
+  STRATUM_LIMIT_SATURATED = 96,
+  // Limit: task row without acceleration: the rows above leave no motion for it.
+  STRATUM_LIMIT_RANK = 97,
+};
+
+// What a level tracks.
+typedef uint32_t StratumTaskKind;
+enum {
+  // The position of the point.
+  STRATUM_TASK_POSITION = 0,
+  // The orientation of the link; the offset is not read.
+  STRATUM_TASK_ORIENTATION = 1,
+};
+
+// Axes that a level controls, base plate: a sum of at least one.
+typedef uint32_t StratumAxes;
+enum {
+  // Along x, for an orientation about x.
+  STRATUM_AXIS_X = 1,
+  // Along y.
+  STRATUM_AXIS_Y = 2,
+  // Along z.
+  STRATUM_AXIS_Z = 4,
+};
+
+// Damping of the null space.
+typedef uint32_t StratumDampingKind;
+enum {
+  // A constant matrix: null_damping.
+  STRATUM_DAMPING_JOINT = 0,
+  // The mass matrix times null_damping_rate.
+  STRATUM_DAMPING_INERTIA = 1,
+};
+
+// Posture towards which the null space is compliant.
+typedef uint32_t StratumPostureKind;
+enum {
+  // The posture that was set.
+  STRATUM_POSTURE_CONSTANT = 0,
+  // The integral of the task motion, with coupling.
+  STRATUM_POSTURE_INTEGRAL_COUPLED = 1,
+  // The integral of the task motion, without coupling.
+  STRATUM_POSTURE_INTEGRAL_UNCOUPLED = 2,
+};
+
+// What a reference asks of its level.
+typedef uint32_t StratumTargetKind;
+enum {
+  // Rest where the level is in the first cycle of holding; for every task.
+  STRATUM_TARGET_HOLD = 0,
+  // A position with velocity and acceleration: x, dx, ddx; for STRATUM_TASK_POSITION.
+  STRATUM_TARGET_POSITION = 1,
+  // An orientation with angular velocity and acceleration: orientation, dx, ddx; for
+  // STRATUM_TASK_ORIENTATION.
+  STRATUM_TARGET_ORIENTATION = 2,
+};
+
 // Storage of a controller in words of 8 bytes.
 #define STRATUM_CONTROLLER_WORDS 640
 
 // Storage of a state in words of 8 bytes.
-#define STRATUM_STATE_WORDS 320
+#define STRATUM_STATE_WORDS 1024
 
 // sizeof(StratumController).
 #define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)
@@ -41,8 +181,11 @@
 // sizeof(StratumStatus).
 #define STRATUM_STATUS_SIZE 40
 
+// sizeof(StratumReference).
+#define STRATUM_REFERENCE_SIZE 112
+
 // The version of the interface: numbers, structs and functions of this header.
-#define STRATUM_ABI_VERSION 1
+#define STRATUM_ABI_VERSION 2
 
 // Joints of an arm.
 #define STRATUM_JOINTS 7
@@ -50,45 +193,8 @@
 // Most levels.
 #define STRATUM_LEVELS 7
 
-// StratumLevel.task: the position of the point.
-#define STRATUM_TASK_POSITION 0
-
-// StratumLevel.task: the orientation of the link.
-#define STRATUM_TASK_ORIENTATION 1
-
-// StratumLevel.axes: along x (about x for an orientation).
-#define STRATUM_AXIS_X 1
-
-// StratumLevel.axes: along y.
-#define STRATUM_AXIS_Y 2
-
-// StratumLevel.axes: along z.
-#define STRATUM_AXIS_Z 4
-
-// StratumSettings.damping: the constant matrix null_damping.
-#define STRATUM_DAMPING_JOINT 0
-
-// StratumSettings.damping: null_damping_rate times the mass matrix.
-#define STRATUM_DAMPING_INERTIA 1
-
-// StratumSettings.posture: the posture that was set.
-#define STRATUM_POSTURE_CONSTANT 0
-
-// StratumSettings.posture: the integral of the task motion, with coupling.
-#define STRATUM_POSTURE_INTEGRAL_COUPLED 1
-
-// StratumSettings.posture: the integral of the task motion, without coupling.
-#define STRATUM_POSTURE_INTEGRAL_UNCOUPLED 2
-
 // sizeof(StratumSettings).
 #define STRATUM_SETTINGS_SIZE 3104
-
-// sizeof(StratumReference).
-#define STRATUM_REFERENCE_SIZE 104
-
-// What a function answers: STRATUM_OK, an argument error (1 to 31), a latched
-// fault (32 to 95) or a configuration error (from 128). The numbers are stable.
-typedef int32_t StratumResult;
 
 // Tables of one link and of the joint that moves it, by the standard
 // Denavit-Hartenberg convention.
@@ -129,13 +235,13 @@ typedef struct StratumArm {
 // One priority level.
 typedef struct StratumLevel {
   // STRATUM_TASK_POSITION or STRATUM_TASK_ORIENTATION.
-  uint32_t task;
-  // Link that carries the point, 1 to 7.
+  StratumTaskKind task;
+  // Link that is turned or carries the point, 1 to 7.
   uint32_t link;
   // The point in the link's frame, m.
   double offset[3];
   // Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
-  uint32_t axes;
+  StratumAxes axes;
   // Always 0: completes the struct to whole words.
   uint32_t reserved;
   // Stiffness of the error, 1/s2: acts on acceleration.
@@ -161,9 +267,9 @@ typedef struct StratumSettings {
   // Rate of STRATUM_DAMPING_INERTIA, 1/s.
   double null_damping_rate;
   // STRATUM_DAMPING_JOINT or STRATUM_DAMPING_INERTIA.
-  uint32_t damping;
+  StratumDampingKind damping;
   // STRATUM_POSTURE_CONSTANT or one of the integrals.
-  uint32_t posture;
+  StratumPostureKind posture;
   // Bandwidth of the external-torque estimate, 1/s.
   double observer_gain[STRATUM_JOINTS];
   // Nominal cycle, s.
@@ -187,16 +293,22 @@ typedef struct StratumState {
   uint64_t opaque[STRATUM_STATE_WORDS];
 } StratumState;
 
-// Desired motion of one level, base-plate axes.
+// Desired motion of one level, base-plate axes. All of it 0 is a hold: a reference
+// that nobody has filled moves nothing.
 typedef struct StratumReference {
   // Position, m.
   double x[3];
-  // Orientation quaternion w x y z, norm 0.5 to 2; 1 0 0 0 for a position.
+  // Orientation quaternion w x y z, norm 0.5 to 2; not read for a position.
   double orientation[4];
   // Velocity, m/s, or angular velocity, rad/s.
   double dx[3];
   // Acceleration, m/s2, or angular acceleration, rad/s2.
   double ddx[3];
+  // STRATUM_TARGET_POSITION or STRATUM_TARGET_ORIENTATION, as the level's task; or
+  // STRATUM_TARGET_HOLD with 0 in all other fields.
+  StratumTargetKind kind;
+  // Always 0.
+  uint32_t reserved;
 } StratumReference;
 
 // What limited or degraded the last cycle.
@@ -211,105 +323,12 @@ typedef struct StratumStatus {
   double fault_min;
   // Largest value allowed.
   double fault_max;
-  // Joints whose torque was cut to its limit: bit 0 is joint 1.
+  // STRATUM_LIMIT_SATURATED: joints whose torque was cut to its limit, bit 0 is joint 1.
   uint32_t saturated;
-  // Task rows without acceleration, because the rows above them leave no
-  // motion for them: bit 0 is the first row of level 1.
+  // STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
+  // leave no motion for them; bit 0 is the first row of level 1.
   uint32_t rank;
 } StratumStatus;
-
-// Done.
-#define STRATUM_OK 0
-
-// A pointer is null.
-#define STRATUM_ERROR_NULL 1
-
-// A pointer is not aligned for what it points to.
-#define STRATUM_ERROR_MISALIGNED 2
-
-// The storage holds no controller, or no state, of this library.
-#define STRATUM_ERROR_UNINITIALISED 3
-
-// A number is infinite or NaN, or too large for the precision of the library.
-#define STRATUM_ERROR_NON_FINITE 4
-
-// The controller has no such level; levels count from 1.
-#define STRATUM_ERROR_LEVEL 5
-
-// The norm of a desired orientation is outside 0.5 to 2.
-#define STRATUM_ERROR_ORIENTATION 6
-
-// State and controller differ in their number of levels.
-#define STRATUM_ERROR_MISMATCH 7
-
-// Header and library are of different versions of the interface.
-#define STRATUM_ERROR_ABI 8
-
-// No arm of this name is built in.
-#define STRATUM_ERROR_PRESET 9
-
-// A text buffer of size 0.
-#define STRATUM_ERROR_TEXT_SIZE 10
-
-// Fault: a measurement or reference that cannot be true.
-#define STRATUM_FAULT_IMPLAUSIBLE 32
-
-// Fault: the law gave a torque that is not finite.
-#define STRATUM_FAULT_NON_FINITE_TORQUE 33
-
-// Settings: another error of the configuration, see stratum_settings_text.
-#define STRATUM_CONFIG_OTHER 128
-
-// Settings: level_count is above 7.
-#define STRATUM_CONFIG_LEVELS 129
-
-// Settings: a choice (task, axes, damping, posture) that does not exist.
-#define STRATUM_CONFIG_CHOICE 130
-
-// Settings: the levels have no rows, or more than 7 together.
-#define STRATUM_CONFIG_ROWS 131
-
-// Settings: a level without an axis.
-#define STRATUM_CONFIG_NO_AXIS 132
-
-// Settings: a point on a link that does not exist.
-#define STRATUM_CONFIG_POINT_LINK 133
-
-// Settings: a point offset that is not finite, or too far away.
-#define STRATUM_CONFIG_POINT_OFFSET 134
-
-// Settings: an entry of a gain matrix is not finite, or too large.
-#define STRATUM_CONFIG_GAIN_VALUE 135
-
-// Settings: a gain matrix is not symmetric.
-#define STRATUM_CONFIG_GAIN_SYMMETRY 136
-
-// Settings: a gain matrix is not positive definite.
-#define STRATUM_CONFIG_GAIN_DEFINITE 137
-
-// Settings: an observer gain is not above 0, or not finite.
-#define STRATUM_CONFIG_OBSERVER_GAIN 138
-
-// Settings: the nominal cycle is outside its range.
-#define STRATUM_CONFIG_CYCLE 139
-
-// Settings: too many cycles of dead time.
-#define STRATUM_CONFIG_DEAD_CYCLES 140
-
-// Settings: the rate of an inertia-shaped damping is not above 0, or not finite.
-#define STRATUM_CONFIG_INERTIA_DAMPING 141
-
-// Settings: the null-space damping is too strong for the cycle.
-#define STRATUM_CONFIG_DAMPING 142
-
-// Arm: a parameter is not finite.
-#define STRATUM_CONFIG_ARM_NON_FINITE 160
-
-// Arm: a parameter that must be above 0 is not.
-#define STRATUM_CONFIG_ARM_NOT_POSITIVE 161
-
-// Arm: an inertia that no body can have.
-#define STRATUM_CONFIG_ARM_INERTIA 162
 
 #ifdef __cplusplus
 extern "C" {
@@ -324,10 +343,10 @@ uint32_t stratum_abi_version(void);
 // Bits of the numbers the library computes in: 64 or 32.
 uint32_t stratum_precision(void);
 
-// Name of a code, such as "STRATUM_ERROR_NULL"; never null.
+// Name of a code or limit, such as "STRATUM_ERROR_NULL"; never null.
 const char *stratum_error_name(StratumResult result);
 
-// Text of a code; never null.
+// Text of a code or limit; never null.
 const char *stratum_error_text(StratumResult result);
 
 // Tables of a built-in arm: "lwr_iv". To start from, or to change one's limits.
@@ -353,14 +372,15 @@ StratumResult stratum_controller_init(struct StratumController *controller,
 // level and the null space at the posture `q` in rad.
 StratumResult stratum_state_init(struct StratumState *state,
                                  const struct StratumController *controller,
-                                 const double *q);
+                                 const double q[STRATUM_JOINTS]);
 
 // Sets all references to rest where the posture `q` in rad puts them.
 StratumResult stratum_reference_hold(struct StratumState *state,
                                      const struct StratumController *controller,
-                                     const double *q);
+                                     const double q[STRATUM_JOINTS]);
 
-// Sets the reference of a level, from the next step on.
+// Sets the reference of a level, from the next step on. One of another kind than the
+// level's task is refused, and so is a hold with numbers.
 StratumResult stratum_reference_set(struct StratumState *state,
                                     uint32_t level,
                                     const struct StratumReference *reference);
@@ -372,7 +392,8 @@ StratumResult stratum_reference_get(const struct StratumState *state,
                                     struct StratumReference *reference);
 
 // Sets the posture in rad towards which the null space is compliant.
-StratumResult stratum_posture_set(struct StratumState *state, const double *posture);
+StratumResult stratum_posture_set(struct StratumState *state,
+                                  const double posture[STRATUM_JOINTS]);
 
 // One cycle: posture in rad, speeds in rad/s, time since the last measurement in s
 // (the nominal cycle at first); torque in Nm, always finite and within limits.
@@ -382,10 +403,10 @@ StratumResult stratum_posture_set(struct StratumState *state, const double *post
 // before. q, dq and torque may be the same array.
 StratumResult stratum_step(const struct StratumController *controller,
                            struct StratumState *state,
-                           const double *q,
-                           const double *dq,
+                           const double q[STRATUM_JOINTS],
+                           const double dq[STRATUM_JOINTS],
                            double interval_s,
-                           double *torque);
+                           double torque[STRATUM_JOINTS]);
 
 // What limited or degraded the last cycle.
 StratumResult stratum_status(const struct StratumState *state,
@@ -399,18 +420,22 @@ StratumResult stratum_fault_text(const struct StratumState *state,
 
 // Residual of the last cycle in Nm, tends to minus the torque that the arm exerts
 // on its environment; zero while a fault is latched.
-StratumResult stratum_residual(const struct StratumState *state, double *residual);
+StratumResult stratum_residual(const struct StratumState *state,
+                               double residual[STRATUM_JOINTS]);
 
 // Gravity torque of the last cycle in Nm, contained in the torque: to be taken off
 // for a robot that adds gravity itself.
-StratumResult stratum_gravity(const struct StratumState *state, double *gravity);
+StratumResult stratum_gravity(const struct StratumState *state,
+                              double gravity[STRATUM_JOINTS]);
 
 // Coriolis and centrifugal torque of the last cycle in Nm, contained in the torque.
-StratumResult stratum_coriolis(const struct StratumState *state, double *coriolis);
+StratumResult stratum_coriolis(const struct StratumState *state,
+                               double coriolis[STRATUM_JOINTS]);
 
 // Tells the observer that `torque` in Nm has acted since the last cycle instead of
 // the one it assumes: for links that round, scale or lose torques.
-StratumResult stratum_applied(struct StratumState *state, const double *torque);
+StratumResult stratum_applied(struct StratumState *state,
+                              const double torque[STRATUM_JOINTS]);
 
 // The next cycle comes after a gap that is too long to be an interval.
 StratumResult stratum_skip(struct StratumState *state);

@@ -10,20 +10,40 @@ use core::fmt::{self, Write};
 use core::mem::MaybeUninit;
 use core::slice;
 
-use controller_core::controller::{Controller, ControllerState, Step};
-use controller_core::measurement::Reference;
+use controller_core::joint::zeros;
+use controller_core::{Controller, Reference, State, Step};
 
 use crate::codes::{
     STRATUM_ERROR_MISALIGNED, STRATUM_ERROR_NULL, STRATUM_ERROR_TEXT_SIZE,
     STRATUM_ERROR_UNINITIALISED, StratumResult,
 };
-use crate::{Scalar, StratumController, StratumState};
+use crate::constants::{STRATUM_TARGET_HOLD, StratumTargetKind};
+use crate::{IDLE, STRATUM_LEVELS, Scalar, StratumController, StratumState};
 
 /// A state with what it was last told and what it last answered.
 pub(crate) struct Held {
-    pub state: ControllerState<Scalar>,
+    pub state: State<Scalar>,
     pub reference: Reference<Scalar>,
+    /// The kinds of targets that the levels can follow.
+    pub kinds: [StratumTargetKind; STRATUM_LEVELS],
     pub step: Step<Scalar>,
+}
+
+impl Held {
+    /// Before the first cycle, without levels. A call of its own: its stack is free again
+    /// when the references are made.
+    #[inline(never)]
+    pub(crate) fn new(place: &mut MaybeUninit<Self>) -> &mut Self {
+        let held = place.as_mut_ptr();
+        // SAFETY: `held` points to a place for the fields; all four are written.
+        unsafe {
+            (&raw mut (*held).state).write(State::new());
+            (&raw mut (*held).reference).write(Reference::hold(0, zeros()));
+            (&raw mut (*held).kinds).write([STRATUM_TARGET_HOLD; STRATUM_LEVELS]);
+            (&raw mut (*held).step).write(IDLE);
+            place.assume_init_mut()
+        }
+    }
 }
 
 /// What lies in a storage: a word that says so, then the content.
@@ -92,26 +112,25 @@ pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T) -> Result<(), Strat
     Ok(())
 }
 
-/// Fills a storage, or empties it on a refusal.
-pub(crate) unsafe fn fill<S: Storage, E>(
+/// Fills a storage, or empties it on a refusal. `write` writes the content in its place:
+/// a second one would not fit on the stack of many a task.
+pub(crate) unsafe fn fill<S: Storage>(
     storage: *mut S,
-    content: impl FnOnce() -> Result<S::Content, E>,
-) -> Result<Result<(), E>, StratumResult> {
+    write: impl for<'a> FnOnce(
+        &'a mut MaybeUninit<S::Content>,
+    ) -> Result<&'a mut S::Content, StratumResult>,
+) -> Result<(), StratumResult> {
     check(storage)?;
     let slot = storage.cast::<Slot<S::Content>>();
     // SAFETY: not null and aligned for the storage, hence large and aligned
-    // enough for the slot (`fits`); the fields are written, never dropped.
+    // enough for the slot (`fits`); the fields are written, never dropped. The content
+    // is there when the magic word says so: `write` answers with it.
     unsafe {
         (&raw mut (*slot).magic).write(0);
-        match content() {
-            Ok(content) => {
-                (&raw mut (*slot).content).write(MaybeUninit::new(content));
-                (&raw mut (*slot).magic).write(S::MAGIC);
-                Ok(Ok(()))
-            }
-            Err(error) => Ok(Err(error)),
-        }
+        write(&mut (*slot).content)?;
+        (&raw mut (*slot).magic).write(S::MAGIC);
     }
+    Ok(())
 }
 
 /// What a storage holds.

@@ -12,18 +12,23 @@
 #![allow(clippy::missing_safety_doc)]
 
 use core::ffi::{CStr, c_char};
+use core::mem::MaybeUninit;
 
-use controller_core::controller::{ControllerState, Step};
 use controller_core::fault::Status;
-use controller_core::joint::zeros;
-use controller_core::measurement::Measurement;
+use controller_core::joint::{JointVector, zeros};
 use controller_core::real::Real;
+use controller_core::{Controller, Measurement, Step};
 
 mod border;
 mod codes;
+pub mod constants;
+mod reference;
 mod settings;
 
 pub use codes::*;
+pub use constants::*;
+pub use reference::STRATUM_REFERENCE_SIZE;
+pub use reference::StratumReference;
 pub use settings::*;
 
 use border::Held;
@@ -38,7 +43,7 @@ pub type Scalar = f32;
 /// Storage of a controller in words of 8 bytes.
 pub const STRATUM_CONTROLLER_WORDS: usize = 640;
 /// Storage of a state in words of 8 bytes.
-pub const STRATUM_STATE_WORDS: usize = 320;
+pub const STRATUM_STATE_WORDS: usize = 1024;
 /// sizeof(StratumController).
 pub const STRATUM_CONTROLLER_SIZE: usize = STRATUM_CONTROLLER_WORDS * 8;
 /// Alignment of a StratumController.
@@ -84,10 +89,10 @@ pub struct StratumStatus {
     pub fault_min: f64,
     /// Largest value allowed.
     pub fault_max: f64,
-    /// Joints whose torque was cut to its limit: bit 0 is joint 1.
+    /// STRATUM_LIMIT_SATURATED: joints whose torque was cut to its limit, bit 0 is joint 1.
     pub saturated: u32,
-    /// Task rows without acceleration, because the rows above them leave no
-    /// motion for them: bit 0 is the first row of level 1.
+    /// STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
+    /// leave no motion for them; bit 0 is the first row of level 1.
     pub rank: u32,
 }
 
@@ -132,13 +137,13 @@ pub extern "C" fn stratum_precision() -> u32 {
     Scalar::default().to_bits().count_zeros()
 }
 
-/// Name of a code, such as "STRATUM_ERROR_NULL"; never null.
+/// Name of a code or limit, such as "STRATUM_ERROR_NULL"; never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn stratum_error_name(result: StratumResult) -> *const c_char {
     codes::name(result).as_ptr()
 }
 
-/// Text of a code; never null.
+/// Text of a code or limit; never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn stratum_error_text(result: StratumResult) -> *const c_char {
     codes::text(result).as_ptr()
@@ -185,7 +190,8 @@ pub unsafe extern "C" fn stratum_settings_text(
 ) -> StratumResult {
     // SAFETY: the contract of the header.
     code(unsafe {
-        border::get(settings).and_then(|settings| match settings.controller() {
+        let mut place = MaybeUninit::uninit();
+        border::get(settings).and_then(|settings| match settings.controller(&mut place) {
             Ok(_) => border::write_text(text, size, ""),
             Err(refusal) => border::write_text(text, size, refusal).and(Err(refusal.code())),
         })
@@ -201,17 +207,16 @@ pub unsafe extern "C" fn stratum_controller_init(
 ) -> StratumResult {
     // SAFETY: the contract of the header.
     code(unsafe {
-        border::fill(controller, || {
-            border::get(settings)?
-                .controller()
-                .map_err(|refusal| refusal.code())
+        border::fill(controller, |place| {
+            let made = border::get(settings)?.controller(place);
+            made.map_err(|refusal| refusal.code())
         })
-        .and_then(|filled| filled)
     })
 }
 
 /// Before the first cycle: nothing observed, no fault; the references keep every
 /// level and the null space at the posture `q` in rad.
+/// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_state_init(
     state: *mut StratumState,
@@ -220,17 +225,25 @@ pub unsafe extern "C" fn stratum_state_init(
 ) -> StratumResult {
     // SAFETY: the contract of the header.
     code(unsafe {
-        border::fill(state, || {
+        border::fill(state, |place| {
             let controller = border::held(controller)?;
             let q = finite(border::array::<STRATUM_JOINTS>(q)?)?.into();
-            Ok(Held {
-                state: ControllerState::new(),
-                reference: controller.rest(&q),
-                step: IDLE,
-            })
+            let held = Held::new(place);
+            held.rest(controller, &q);
+            Ok(held)
         })
-        .and_then(|filled| filled)
     })
+}
+
+impl Held {
+    /// References that rest in the posture `q`.
+    fn rest(&mut self, controller: &Controller<Scalar>, q: &JointVector<Scalar>) {
+        self.reference = controller.rest_reference(q);
+        self.kinds = [STRATUM_TARGET_HOLD; STRATUM_LEVELS];
+        for (kind, target) in self.kinds.iter_mut().zip(self.reference.targets()) {
+            *kind = reference::kind(target);
+        }
+    }
 }
 
 /// Before the first cycle and after a reset.
@@ -239,14 +252,11 @@ const IDLE: Step<Scalar> = Step {
     residual: zeros(),
     gravity: zeros(),
     coriolis: zeros(),
-    status: Status {
-        fault: None,
-        saturated: controller_core::fault::Flags::NONE,
-        rank: controller_core::fault::Flags::NONE,
-    },
+    status: Status::CLEAR,
 };
 
 /// Sets all references to rest where the posture `q` in rad puts them.
+/// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_reference_hold(
     state: *mut StratumState,
@@ -257,12 +267,13 @@ pub unsafe extern "C" fn stratum_reference_hold(
     code(unsafe { border::held_mut(state) }.and_then(|held| {
         // SAFETY: likewise.
         let (controller, q) = unsafe { (border::held(controller)?, border::array(q)?) };
-        held.reference = controller.rest(&finite::<STRATUM_JOINTS>(q)?.into());
+        held.rest(controller, &finite::<STRATUM_JOINTS>(q)?.into());
         Ok(())
     }))
 }
 
-/// Sets the reference of a level, from the next step on.
+/// Sets the reference of a level, from the next step on. One of another kind than the
+/// level's task is refused, and so is a hold with numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_reference_set(
     state: *mut StratumState,
@@ -273,19 +284,19 @@ pub unsafe extern "C" fn stratum_reference_set(
     code(unsafe { border::held_mut(state) }.and_then(|held| {
         // SAFETY: likewise.
         let reference = unsafe { border::get(reference) }?;
-        let place = index(level)
-            .and_then(|index| held.reference.tasks.get_mut(index))
-            .ok_or(STRATUM_ERROR_LEVEL)?;
-        for part in [reference.x, reference.dx, reference.ddx] {
-            finite(part)?;
+        let index = index(level).ok_or(STRATUM_ERROR_LEVEL)?;
+        let places = held
+            .reference
+            .targets_mut()
+            .get_mut(index)
+            .zip(held.kinds.get(index));
+        let (place, &followed) = places.ok_or(STRATUM_ERROR_LEVEL)?;
+        let target = reference.target()?;
+        let kind = reference::kind(&target);
+        if kind != STRATUM_TARGET_HOLD && kind != followed {
+            return Err(STRATUM_ERROR_WRONG_TARGET);
         }
-        let [w, x, y, z] = finite(reference.orientation)?;
-        let [min, max] = controller_core::measurement::QUATERNION_NORMS
-            .map(|norm| Scalar::from_f64(norm * norm));
-        if !(min..=max).contains(&(w * w + x * x + y * y + z * z)) {
-            return Err(STRATUM_ERROR_ORIENTATION);
-        }
-        *place = reference.task_reference();
+        *place = target;
         Ok(())
     }))
 }
@@ -306,7 +317,7 @@ pub unsafe extern "C" fn stratum_reference_get(
     // SAFETY: the contract of the header.
     code(unsafe { border::held(state) }.and_then(|held| {
         let set = index(level)
-            .and_then(|index| held.reference.tasks.get(index))
+            .and_then(|index| held.reference.targets().get(index))
             .ok_or(STRATUM_ERROR_LEVEL)?;
         // SAFETY: likewise.
         unsafe { border::put(reference, set.into()) }
@@ -314,6 +325,7 @@ pub unsafe extern "C" fn stratum_reference_get(
 }
 
 /// Sets the posture in rad towards which the null space is compliant.
+/// cbindgen:ptrs-as-arrays=[[posture;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_posture_set(
     state: *mut StratumState,
@@ -334,6 +346,7 @@ pub unsafe extern "C" fn stratum_posture_set(
 /// torque is the gravity torque of the last plausible posture, until
 /// stratum_reset. On an argument error the torque is zero and the state is as
 /// before. q, dq and torque may be the same array.
+/// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS], [dq;STRATUM_JOINTS], [torque;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_step(
     controller: *const StratumController,
@@ -356,12 +369,12 @@ pub unsafe extern "C" fn stratum_step(
                 (Ok(controller), Ok(held), Ok(measured)) => (controller, held, measured),
                 (Err(error), ..) | (_, Err(error), _) | (.., Err(error)) => return error,
             };
-        if controller.tasks().len() != held.reference.tasks.len() {
+        if controller.level_count() != held.reference.targets().len() {
             return STRATUM_ERROR_MISMATCH;
         }
         let measurement = Measurement {
-            q: settings::joints(&q),
-            dq: settings::joints(&dq),
+            q: q.map(Scalar::from_f64).into(),
+            dq: dq.map(Scalar::from_f64).into(),
             interval_s: Scalar::from_f64(interval_s),
         };
         held.step = controller.step(&mut held.state, &measurement, &held.reference);
@@ -437,6 +450,7 @@ unsafe fn last(
 
 /// Residual of the last cycle in Nm, tends to minus the torque that the arm exerts
 /// on its environment; zero while a fault is latched.
+/// cbindgen:ptrs-as-arrays=[[residual;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_residual(
     state: *const StratumState,
@@ -448,6 +462,7 @@ pub unsafe extern "C" fn stratum_residual(
 
 /// Gravity torque of the last cycle in Nm, contained in the torque: to be taken off
 /// for a robot that adds gravity itself.
+/// cbindgen:ptrs-as-arrays=[[gravity;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_gravity(
     state: *const StratumState,
@@ -458,6 +473,7 @@ pub unsafe extern "C" fn stratum_gravity(
 }
 
 /// Coriolis and centrifugal torque of the last cycle in Nm, contained in the torque.
+/// cbindgen:ptrs-as-arrays=[[coriolis;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_coriolis(
     state: *const StratumState,
@@ -469,6 +485,7 @@ pub unsafe extern "C" fn stratum_coriolis(
 
 /// Tells the observer that `torque` in Nm has acted since the last cycle instead of
 /// the one it assumes: for links that round, scale or lose torques.
+/// cbindgen:ptrs-as-arrays=[[torque;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_applied(
     state: *mut StratumState,
@@ -478,7 +495,7 @@ pub unsafe extern "C" fn stratum_applied(
     code(unsafe { border::held_mut(state) }.and_then(|held| {
         // SAFETY: likewise.
         let torque = finite::<STRATUM_JOINTS>(unsafe { border::array(torque) }?)?;
-        held.state.applied(&torque.into());
+        held.state.set_applied_torque(&torque.into());
         Ok(())
     }))
 }
@@ -487,7 +504,7 @@ pub unsafe extern "C" fn stratum_applied(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_skip(state: *mut StratumState) -> StratumResult {
     // SAFETY: the contract of the header.
-    code(unsafe { border::held_mut(state) }.map(|held| held.state.skip()))
+    code(unsafe { border::held_mut(state) }.map(|held| held.state.resume_after_gap()))
 }
 
 /// Clears a latched fault; the observer starts anew, the references stay.

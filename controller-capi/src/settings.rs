@@ -4,45 +4,33 @@
 //! refused by name.
 
 use core::fmt;
+use core::mem::MaybeUninit;
 
-use controller_core::config::{ConfigError, ControllerConfig};
-use controller_core::controller::Controller;
-use controller_core::joint::{DOF, JointMatrix, JointVector, Matrix3, Vector3};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::model::{ArmModel, ArmParameters, LWR_IV, LinkParameters, ModelError};
-use controller_core::real::Real;
-use controller_core::task::{Axes, MAX_LEVELS, Task, TaskKind, TaskReference};
+use controller_core::arm::{ArmParameters, LWR_IV, LinkParameters};
+use controller_core::gain::diagonal;
+use controller_core::joint::DOF;
+use controller_core::law::null_space::{NullDamping, Posture};
+use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS};
+use controller_core::{
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, NullSpace, Task, TaskGains,
+    TaskSet,
+};
 
-use crate::{Scalar, codes};
+use crate::Scalar;
+use crate::codes::{self, StratumResult};
+use crate::constants::{
+    STRATUM_AXIS_X, STRATUM_AXIS_Y, STRATUM_AXIS_Z, STRATUM_DAMPING_INERTIA, STRATUM_DAMPING_JOINT,
+    STRATUM_POSTURE_CONSTANT, STRATUM_POSTURE_INTEGRAL_COUPLED, STRATUM_POSTURE_INTEGRAL_UNCOUPLED,
+    STRATUM_TASK_ORIENTATION, STRATUM_TASK_POSITION, StratumAxes, StratumDampingKind,
+    StratumPostureKind, StratumTaskKind,
+};
 
 /// The version of the interface: numbers, structs and functions of this header.
-pub const STRATUM_ABI_VERSION: u32 = 1;
+pub const STRATUM_ABI_VERSION: u32 = 2;
 /// Joints of an arm.
 pub const STRATUM_JOINTS: usize = 7;
 /// Most levels.
 pub const STRATUM_LEVELS: usize = 7;
-
-/// StratumLevel.task: the position of the point.
-pub const STRATUM_TASK_POSITION: u32 = 0;
-/// StratumLevel.task: the orientation of the link.
-pub const STRATUM_TASK_ORIENTATION: u32 = 1;
-/// StratumLevel.axes: along x (about x for an orientation).
-pub const STRATUM_AXIS_X: u32 = 1;
-/// StratumLevel.axes: along y.
-pub const STRATUM_AXIS_Y: u32 = 2;
-/// StratumLevel.axes: along z.
-pub const STRATUM_AXIS_Z: u32 = 4;
-/// StratumSettings.damping: the constant matrix null_damping.
-pub const STRATUM_DAMPING_JOINT: u32 = 0;
-/// StratumSettings.damping: null_damping_rate times the mass matrix.
-pub const STRATUM_DAMPING_INERTIA: u32 = 1;
-/// StratumSettings.posture: the posture that was set.
-pub const STRATUM_POSTURE_CONSTANT: u32 = 0;
-/// StratumSettings.posture: the integral of the task motion, with coupling.
-pub const STRATUM_POSTURE_INTEGRAL_COUPLED: u32 = 1;
-/// StratumSettings.posture: the integral of the task motion, without coupling.
-pub const STRATUM_POSTURE_INTEGRAL_UNCOUPLED: u32 = 2;
 
 /// Tables of one link and of the joint that moves it, by the standard
 /// Denavit-Hartenberg convention.
@@ -89,13 +77,13 @@ pub struct StratumArm {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StratumLevel {
     /// STRATUM_TASK_POSITION or STRATUM_TASK_ORIENTATION.
-    pub task: u32,
-    /// Link that carries the point, 1 to 7.
+    pub task: StratumTaskKind,
+    /// Link that is turned or carries the point, 1 to 7.
     pub link: u32,
     /// The point in the link's frame, m.
     pub offset: [f64; 3],
     /// Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
-    pub axes: u32,
+    pub axes: StratumAxes,
     /// Always 0: completes the struct to whole words.
     pub reserved: u32,
     /// Stiffness of the error, 1/s2: acts on acceleration.
@@ -123,9 +111,9 @@ pub struct StratumSettings {
     /// Rate of STRATUM_DAMPING_INERTIA, 1/s.
     pub null_damping_rate: f64,
     /// STRATUM_DAMPING_JOINT or STRATUM_DAMPING_INERTIA.
-    pub damping: u32,
+    pub damping: StratumDampingKind,
     /// STRATUM_POSTURE_CONSTANT or one of the integrals.
-    pub posture: u32,
+    pub posture: StratumPostureKind,
     /// Bandwidth of the external-torque estimate, 1/s.
     pub observer_gain: [f64; STRATUM_JOINTS],
     /// Nominal cycle, s.
@@ -136,100 +124,69 @@ pub struct StratumSettings {
     pub reserved: u32,
 }
 
-/// Desired motion of one level, base-plate axes.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StratumReference {
-    /// Position, m.
-    pub x: [f64; 3],
-    /// Orientation quaternion w x y z, norm 0.5 to 2; 1 0 0 0 for a position.
-    pub orientation: [f64; 4],
-    /// Velocity, m/s, or angular velocity, rad/s.
-    pub dx: [f64; 3],
-    /// Acceleration, m/s2, or angular acceleration, rad/s2.
-    pub ddx: [f64; 3],
-}
-
 /// sizeof(StratumSettings).
 pub const STRATUM_SETTINGS_SIZE: usize = 3104;
-/// sizeof(StratumReference).
-pub const STRATUM_REFERENCE_SIZE: usize = 104;
 const _: () = assert!(size_of::<StratumSettings>() == STRATUM_SETTINGS_SIZE);
-const _: () = assert!(size_of::<StratumReference>() == STRATUM_REFERENCE_SIZE);
 const _: () = assert!(STRATUM_JOINTS == DOF && STRATUM_LEVELS == MAX_LEVELS);
 
 /// Why settings are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Refusal {
-    Abi { value: u32 },
-    Levels { value: u32 },
-    Choice(Choice),
-    Model(ModelError),
+    Abi(u32),
+    Number(Number),
     Config(ConfigError),
 }
 
-/// A choice that does not exist: thing, level (0: none), value, largest allowed.
+/// A whole number outside its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Choice {
-    thing: &'static str,
+pub(crate) struct Number {
+    code: StratumResult,
+    /// 0 for what belongs to no level.
     level: usize,
+    thing: &'static str,
     value: u32,
-    max: u32,
+    allowed: [u32; 2],
 }
 
 impl Refusal {
-    pub(crate) fn code(&self) -> codes::StratumResult {
+    pub(crate) fn code(&self) -> StratumResult {
         match self {
-            Self::Abi { .. } => codes::STRATUM_ERROR_ABI,
-            Self::Levels { .. } => codes::STRATUM_CONFIG_LEVELS,
-            Self::Choice(_) => codes::STRATUM_CONFIG_CHOICE,
-            Self::Model(error) => codes::of_model(error),
+            Self::Abi(_) => codes::STRATUM_ERROR_ABI,
+            Self::Number(number) => number.code,
             Self::Config(error) => codes::of_config(error),
         }
+    }
+}
+
+impl From<ConfigError> for Refusal {
+    fn from(error: ConfigError) -> Self {
+        Self::Config(error)
     }
 }
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Abi { value } => write!(
+            Self::Abi(value) => write!(
                 f,
                 "settings.abi is {value}; this library has {STRATUM_ABI_VERSION} \
                  (start from stratum_settings_default)"
             ),
-            Self::Levels { value } => {
-                write!(f, "level_count is {value}; allowed 1 to {STRATUM_LEVELS}")
-            }
-            Self::Choice(Choice {
-                thing,
+            Self::Number(Number {
                 level,
+                thing,
                 value,
-                max,
+                allowed: [min, max],
+                ..
             }) => {
                 if *level > 0 {
                     write!(f, "level {level}: ")?;
                 }
-                write!(f, "{thing} is {value}; allowed 0 to {max}")
+                write!(f, "{thing} is {value}; allowed {min} to {max}")
             }
-            Self::Model(error) => error.fmt(f),
             Self::Config(error) => error.fmt(f),
         }
     }
-}
-
-fn choice<T: Copy>(
-    thing: &'static str,
-    level: usize,
-    value: u32,
-    allowed: &[T],
-) -> Result<T, Refusal> {
-    let found = usize::try_from(value).ok().and_then(|i| allowed.get(i));
-    found.copied().ok_or(Refusal::Choice(Choice {
-        thing,
-        level,
-        value,
-        max: allowed.len().saturating_sub(1) as u32,
-    }))
 }
 
 impl From<&LinkParameters> for StratumLink {
@@ -283,61 +240,58 @@ impl StratumArm {
             links: self.links.each_ref().map(StratumLink::parameters),
         }
     }
-}
 
-/// All combinations of axes by their bits.
-const AXES: [Axes; 8] = {
-    let mut all = [Axes { xyz: [false; 3] }; 8];
-    let mut bits = 0;
-    while bits < 8 {
-        all[bits] = Axes {
-            xyz: [bits & 1 != 0, bits & 2 != 0, bits & 4 != 0],
-        };
-        bits += 1;
-    }
-    all
-};
-
-impl StratumLevel {
-    fn task(&self, level: usize) -> Result<Task<Scalar>, Refusal> {
-        let kinds = [TaskKind::Position, TaskKind::Orientation];
-        Ok(Task {
-            kind: choice("task", level, self.task, &kinds)?,
-            point: LinkPoint {
-                link: usize::try_from(self.link).unwrap_or(usize::MAX),
-                offset: vector(&self.offset),
-            },
-            axes: choice("axes", level, self.axes, &AXES)?,
-            stiffness: Matrix3::from(self.stiffness.map(|row| row.map(Scalar::from_f64)))
-                .transpose(),
-            damping: Matrix3::from(self.damping.map(|row| row.map(Scalar::from_f64))).transpose(),
-        })
-    }
-}
-
-fn vector(values: &[f64; 3]) -> Vector3<Scalar> {
-    Vector3::from(values.map(Scalar::from_f64))
-}
-
-pub(crate) fn joints(values: &[f64; DOF]) -> JointVector<Scalar> {
-    JointVector::from(values.map(Scalar::from_f64))
-}
-
-/// From rows; a core matrix is made of columns.
-fn matrix(rows: &[[f64; DOF]; DOF]) -> JointMatrix<Scalar> {
-    JointMatrix::from(rows.map(|row| row.map(Scalar::from_f64))).transpose()
-}
-
-fn diagonal<const N: usize>(values: [f64; N]) -> [[f64; N]; N] {
-    let mut matrix = [[0.0; N]; N];
-    for (i, (row, value)) in matrix.iter_mut().zip(values).enumerate() {
-        for (j, entry) in row.iter_mut().enumerate() {
-            if i == j {
-                *entry = value;
-            }
+    #[inline(never)]
+    fn controller<'a>(
+        &self,
+        config: &ControllerConfig,
+        place: &'a mut MaybeUninit<Controller<Scalar>>,
+    ) -> Result<&'a mut Controller<Scalar>, Refusal> {
+        match Controller::new(&self.parameters(), config) {
+            Ok(controller) => Ok(place.write(controller)),
+            Err(error) => Err(Refusal::Config(error)),
         }
     }
-    matrix
+}
+
+impl StratumLevel {
+    /// The task of the level with this number. Link and axes that no task can have are
+    /// refused here: the core has no words for them.
+    fn task(&self, level: usize) -> Result<Task, Refusal> {
+        let refused = |code, thing, value, allowed| {
+            Refusal::Number(Number {
+                code,
+                level,
+                thing,
+                value,
+                allowed,
+            })
+        };
+        let link = usize::try_from(self.link).ok().and_then(Link::from_number);
+        let link = link.ok_or(refused(
+            codes::STRATUM_CONFIG_POINT_LINK,
+            "link",
+            self.link,
+            [1, DOF as u32],
+        ))?;
+        let axes = Axes::from_bits(self.axes).ok_or({
+            let code = match self.axes {
+                0 => codes::STRATUM_CONFIG_NO_AXIS,
+                _ => codes::STRATUM_CONFIG_CHOICE,
+            };
+            refused(code, "axes", self.axes, [1, 7])
+        })?;
+        let gains = TaskGains {
+            stiffness: self.stiffness,
+            damping: self.damping,
+        };
+        let offset = self.offset;
+        match self.task {
+            STRATUM_TASK_POSITION => Ok(Task::position(LinkPoint { link, offset }, axes, gains)),
+            STRATUM_TASK_ORIENTATION => Ok(Task::orientation(link, axes, gains)),
+            value => Err(refused(codes::STRATUM_CONFIG_CHOICE, "task", value, [0, 1])),
+        }
+    }
 }
 
 impl Default for StratumSettings {
@@ -371,66 +325,90 @@ impl Default for StratumSettings {
 }
 
 impl StratumSettings {
-    pub(crate) fn controller(&self) -> Result<Controller<Scalar>, Refusal> {
+    /// Makes the controller in its place. Steps that need much stack are calls of their
+    /// own, so that they need it one after the other.
+    pub(crate) fn controller<'a>(
+        &self,
+        place: &'a mut MaybeUninit<Controller<Scalar>>,
+    ) -> Result<&'a mut Controller<Scalar>, Refusal> {
         if self.abi != STRATUM_ABI_VERSION {
-            return Err(Refusal::Abi { value: self.abi });
+            return Err(Refusal::Abi(self.abi));
         }
-        let count = usize::try_from(self.level_count).unwrap_or(usize::MAX);
-        let Some(levels) = self.levels.get(..count) else {
-            return Err(Refusal::Levels {
-                value: self.level_count,
-            });
-        };
-        let mut tasks = heapless::Vec::new();
-        for (number, level) in (1..).zip(levels) {
-            // Never full: there are no more levels than places.
-            let _ = tasks.push(level.task(number)?);
+        match &self.config() {
+            Ok(config) => self.arm.controller(config, place),
+            Err(refusal) => Err(*refusal),
         }
-        let inertia = choice("damping", 0, self.damping, &[false, true])?;
-        let postures = [
-            Posture::Constant,
-            Posture::IntegralCoupled,
-            Posture::IntegralUncoupled,
-        ];
-        let config = ControllerConfig {
-            tasks,
+    }
+
+    #[inline(never)]
+    fn config(&self) -> Result<ControllerConfig, Refusal> {
+        Ok(ControllerConfig {
+            tasks: self.tasks()?,
             null_space: NullSpace {
-                stiffness: matrix(&self.null_stiffness),
-                damping: if inertia {
-                    NullDamping::Inertia(Scalar::from_f64(self.null_damping_rate))
-                } else {
-                    NullDamping::Joint(matrix(&self.null_damping))
+                stiffness: self.null_stiffness,
+                damping: match self.damping {
+                    STRATUM_DAMPING_JOINT => NullDamping::Joint(self.null_damping),
+                    STRATUM_DAMPING_INERTIA => NullDamping::Inertia(self.null_damping_rate),
+                    value => return Err(choice("damping", value, 1)),
                 },
-                posture: choice("posture", 0, self.posture, &postures)?,
+                posture: match self.posture {
+                    STRATUM_POSTURE_CONSTANT => Posture::Constant,
+                    STRATUM_POSTURE_INTEGRAL_COUPLED => Posture::IntegralCoupled,
+                    STRATUM_POSTURE_INTEGRAL_UNCOUPLED => Posture::IntegralUncoupled,
+                    value => return Err(choice("posture", value, 2)),
+                },
             },
-            observer_gain: joints(&self.observer_gain),
-            cycle_s: Scalar::from_f64(self.cycle_s),
-            // What does not fit is too many.
-            dead_cycles: u8::try_from(self.dead_cycles).unwrap_or(u8::MAX),
+            observer_gain: self.observer_gain,
+            cycle_s: self.cycle_s,
+            dead_cycles: match u8::try_from(self.dead_cycles) {
+                Ok(cycles) => cycles,
+                Err(_) => {
+                    return Err(number(
+                        codes::STRATUM_CONFIG_DEAD_CYCLES,
+                        "dead_cycles",
+                        self.dead_cycles,
+                        [0, u32::from(DEAD_CYCLES_MAX)],
+                    ));
+                }
+            },
+        })
+    }
+
+    #[inline(never)]
+    fn tasks(&self) -> Result<TaskSet, Refusal> {
+        let unused = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        let mut tasks = [unused; STRATUM_LEVELS];
+        let count = usize::try_from(self.level_count).unwrap_or(usize::MAX);
+        let used = match tasks.get_mut(..count) {
+            Some(used) if count > 0 => used,
+            _ => {
+                return Err(number(
+                    codes::STRATUM_CONFIG_LEVELS,
+                    "level_count",
+                    self.level_count,
+                    [1, STRATUM_LEVELS as u32],
+                ));
+            }
         };
-        let model = ArmModel::new(&self.arm.parameters()).map_err(Refusal::Model)?;
-        Controller::new(&model, &config).map_err(Refusal::Config)
+        for (number, (task, level)) in (1..).zip(used.iter_mut().zip(&self.levels)) {
+            *task = level.task(number)?;
+        }
+        Ok(TaskSet::new(used)?)
     }
 }
 
-impl StratumReference {
-    pub(crate) fn task_reference(&self) -> TaskReference<Scalar> {
-        TaskReference {
-            x: vector(&self.x),
-            orientation: self.orientation.map(Scalar::from_f64).into(),
-            dx: vector(&self.dx),
-            ddx: vector(&self.ddx),
-        }
-    }
+/// A whole number of the settings as a whole.
+fn number(code: StratumResult, thing: &'static str, value: u32, allowed: [u32; 2]) -> Refusal {
+    Refusal::Number(Number {
+        code,
+        level: 0,
+        thing,
+        value,
+        allowed,
+    })
 }
 
-impl From<&TaskReference<Scalar>> for StratumReference {
-    fn from(reference: &TaskReference<Scalar>) -> Self {
-        Self {
-            x: reference.x.map(Real::to_f64).into(),
-            orientation: reference.orientation.map(Real::to_f64).into(),
-            dx: reference.dx.map(Real::to_f64).into(),
-            ddx: reference.ddx.map(Real::to_f64).into(),
-        }
-    }
+/// A choice that does not exist.
+fn choice(thing: &'static str, value: u32, max: u32) -> Refusal {
+    number(codes::STRATUM_CONFIG_CHOICE, thing, value, [0, max])
 }

@@ -55,6 +55,7 @@ static void arguments(void) {
     for (int i = 0; i < 7; i++) bad[i] = infinite;
 
     EXPECT(STRATUM_ERROR_ABI, stratum_settings_default(STRATUM_ABI_VERSION + 1, &settings));
+    EXPECT(STRATUM_ERROR_ABI, stratum_settings_default(1, &settings));
     EXPECT(STRATUM_ERROR_NULL, stratum_settings_default(STRATUM_ABI_VERSION, 0));
     EXPECT(STRATUM_ERROR_MISALIGNED,
            stratum_settings_default(STRATUM_ABI_VERSION, ODD(StratumSettings)));
@@ -121,8 +122,27 @@ static void references(void) {
     changed = reference;
     changed.orientation[3] = bad[0];
     EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_set(&state, 1, &changed));
-    changed.orientation[3] = 2.0;
+    changed = reference;
+    changed.reserved = 1;
+    EXPECT(STRATUM_ERROR_TARGET, stratum_reference_set(&state, 1, &changed));
+    changed = reference;
+    changed.kind = 3;
+    EXPECT(STRATUM_ERROR_TARGET, stratum_reference_set(&state, 1, &changed));
+    changed.kind = STRATUM_TARGET_HOLD; /* as from a program that knows no kinds */
+    EXPECT(STRATUM_ERROR_TARGET, stratum_reference_set(&state, 1, &changed));
+    StratumReference filled = {.x = {-0.5, 0.1, 0.4}, .orientation = {1.0, 0.0, 0.0, 0.0}};
+    EXPECT(STRATUM_ERROR_TARGET, stratum_reference_set(&state, 1, &filled));
+    changed.kind = STRATUM_TARGET_ORIENTATION;
+    changed.orientation[0] = 2.1;
     EXPECT(STRATUM_ERROR_ORIENTATION, stratum_reference_set(&state, 1, &changed));
+    changed.orientation[0] = 1.0;
+    EXPECT(STRATUM_ERROR_WRONG_TARGET, stratum_reference_set(&state, 1, &changed));
+    EXPECT(STRATUM_OK, stratum_reference_get(&state, 1, &changed));
+    CHECK(changed.kind == STRATUM_TARGET_POSITION && changed.x[2] == reference.x[2]);
+    StratumReference hold = {0};
+    EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &hold));
+    EXPECT(STRATUM_OK, stratum_reference_get(&state, 1, &changed));
+    CHECK(changed.kind == STRATUM_TARGET_HOLD);
 
     EXPECT(STRATUM_OK, stratum_posture_set(&state, q));
     EXPECT(STRATUM_ERROR_NULL, stratum_posture_set(0, q));
@@ -172,6 +192,16 @@ static void steps(void) {
     EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
     fresh();
     no_step(STRATUM_ERROR_MISMATCH, &other, &state, q, dq);
+
+    settings.levels[0].task = STRATUM_TASK_ORIENTATION;
+    EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
+    fresh();
+    EXPECT(STRATUM_OK, stratum_reference_hold(&state, &controller, q));
+    EXPECT(STRATUM_FAULT_WRONG_TARGET, stratum_step(&other, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_fault_text(&state, text, sizeof text));
+    board_print(text);
+    board_print("\n");
+    EXPECT(STRATUM_OK, stratum_reset(&state));
 
     EXPECT(STRATUM_OK, stratum_step(&controller, &state, q, dq, 0.002, torque));
     EXPECT(STRATUM_OK, stratum_status(&state, &status));
@@ -244,12 +274,13 @@ static void steps(void) {
 static void configurations(void) {
     fresh();
     REFUSED(STRATUM_ERROR_ABI, settings.abi = 0);
+    REFUSED(STRATUM_ERROR_ABI, settings.abi = 1);
     REFUSED(STRATUM_CONFIG_LEVELS, settings.level_count = 8);
     REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].task = 2);
     REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].axes = 8);
     REFUSED(STRATUM_CONFIG_CHOICE, settings.damping = 0xffffffffu);
     REFUSED(STRATUM_CONFIG_CHOICE, settings.posture = 3);
-    REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 0);
+    REFUSED(STRATUM_CONFIG_LEVELS, settings.level_count = 0);
     REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 3);
     REFUSED(STRATUM_CONFIG_NO_AXIS, settings.level_count = 2; settings.levels[1].axes = 0);
     REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 0);

@@ -1,5 +1,5 @@
-/* 5,000 cycles of two levels from a sequence of integers, with moving references,
- * a fault and a reset. Prints the bits of some torques and a hash of all. The same
+/* 5,000 cycles of three levels from a sequence of integers, with moving positions and
+ * orientations, a hold, a fault and a reset. Prints the bits of some torques and a hash of all. The same
  * lines come from `cargo run -p controller-capi --example replay`, which calls
  * the core in Rust. */
 #include "board.h"
@@ -62,14 +62,17 @@ static void must(StratumResult result) {
 int main(void) {
     double q[7], dq[7], torque[7], residual[7], gravity[7];
     StratumReference reference;
+    const StratumReference hold = {0};
     StratumStatus status;
     uint32_t saturated = 0;
 
     must(stratum_settings_default(STRATUM_ABI_VERSION, &settings));
-    settings.level_count = 2;
+    settings.level_count = 3;
     settings.levels[1].link = 3; /* the elbow */
     settings.levels[1].offset[2] = 0.0;
     settings.levels[1].axes = STRATUM_AXIS_X | STRATUM_AXIS_Y;
+    settings.levels[2].task = STRATUM_TASK_ORIENTATION; /* of the flange */
+    settings.levels[2].axes = STRATUM_AXIS_Z;
     must(stratum_controller_init(&controller, &settings));
     measure(0, q, dq);
     must(stratum_state_init(&state, &controller, q));
@@ -83,6 +86,11 @@ int main(void) {
         must(stratum_reference_get(&state, 1, &reference));
         reference.x[2] += wave(64 * cycle) / 2097152.0;
         must(stratum_reference_set(&state, 1, &reference));
+        if (cycle >= 2000 && cycle < 2500) must(stratum_reference_set(&state, 2, &hold));
+        must(stratum_reference_get(&state, 3, &reference));
+        reference.orientation[1] += wave(32 * cycle) / 1048576.0;
+        reference.dx[2] = wave(64 * cycle) / 1048576.0;
+        must(stratum_reference_set(&state, 3, &reference));
         must(stratum_posture_set(&state, centre));
         if (cycle == 3010) must(stratum_reset(&state));
         double interval_s = cycle == 3000 ? -1.0 : 1.0 / 512.0;
