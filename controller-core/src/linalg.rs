@@ -151,11 +151,14 @@ impl<T: Real> Cholesky<T> {
         let mut whole = *b;
         // (L^-1 B)^T = B L^-T, and once more the same.
         for _ in 0..2 {
+            let mut next = zeros();
             for j in 0..DOF {
                 let solved = self.solve_lower(&whole.column(j).into_owned());
-                whole.set_column(j, &solved);
+                for i in 0..DOF {
+                    next[(j, i)] = solved[i];
+                }
             }
-            whole.transpose_mut();
+            whole = next;
         }
         whole
     }

@@ -109,32 +109,35 @@ impl TaskSet {
     /// point too far from its link, gains that are not finite, symmetric and positive
     /// definite.
     pub fn new(tasks: &[Task]) -> Result<Self, ConfigError> {
-        let set = Self::unvalidated(tasks)?;
+        Self::count(tasks)?;
         for (level, task) in (1..).zip(tasks) {
             task.validate(level)?;
         }
-        Ok(set)
+        Self::unvalidated(tasks)
     }
 
     /// The same without a look at points and gains.
     pub(crate) fn unvalidated(tasks: &[Task]) -> Result<Self, ConfigError> {
-        let count = tasks.len();
-        if !(1..=MAX_LEVELS).contains(&count) {
-            return Err(ConfigError::Levels { levels: count });
+        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        let count = Self::count(tasks)?;
+        let mut tasks = tasks.iter();
+        Ok(Self {
+            tasks: core::array::from_fn(|_| *tasks.next().unwrap_or(&UNUSED)),
+            count,
+        })
+    }
+
+    /// Number of levels, where it and their rows are as they must be.
+    fn count(tasks: &[Task]) -> Result<usize, ConfigError> {
+        let levels = tasks.len();
+        if !(1..=MAX_LEVELS).contains(&levels) {
+            return Err(ConfigError::Levels { levels });
         }
         let rows = tasks.iter().map(|task| task.axes.count()).sum();
         if rows > MAX_ROWS {
             return Err(ConfigError::Rows { rows });
         }
-        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
-        let mut set = Self {
-            tasks: [UNUSED; MAX_LEVELS],
-            count,
-        };
-        for (place, task) in set.tasks.iter_mut().zip(tasks) {
-            *place = *task;
-        }
-        Ok(set)
+        Ok(levels)
     }
 
     /// The tasks, highest priority first.
