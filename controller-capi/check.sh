@@ -10,6 +10,12 @@ build=${CARGO_TARGET_DIR:-$PWD/target}
 out=$build/capi
 mkdir -p "$out"
 
+# have TOOL [PACKAGE]: whether there is a tool, or can be.
+have() {
+  command -v "$1" > /dev/null ||
+    { [ "$(id -u)" = 0 ] && apt-get install -y -qq "${2:-$1}" > /dev/null 2>&1 &&
+      command -v "$1" > /dev/null; }
+}
 step() { printf -- '-- %s\n' "$*"; }
 skipped() { echo "SKIPPED $*"; }
 fail() { echo "$*"; exit 1; }
@@ -53,6 +59,8 @@ else
 fi
 
 programs="bare_loop replay errors"
+# On the target the stack that they need is measured as well.
+target_programs="$programs stack"
 task="rtos_task.c rtos_host.c robot_host.c board.c board_host.c"
 flags="-std=c11 -Wall -Wextra -Wpedantic -Werror -O2 -I$crate/include"
 cd "$crate/examples/c"
@@ -121,6 +129,36 @@ else
   skipped "header in C++: no g++"
 fi
 
+# installed PREFIX [arguments of install.sh]: what is found under a prefix that has moved.
+installed() {
+  rm -rf "$1" "$1-before"
+  (cd "$crate/.." && CARGO_TARGET_DIR=$build/capi-f64 "$crate/install.sh" "$1-before" "${@:2}")
+  mv "$1-before" "$1"
+}
+
+step "host: installed, found by pkg-config and by CMake"
+if ! command -v gcc > /dev/null; then
+  skipped "installed library on the host: no gcc"
+else
+  installed "$out/prefix"
+  if have pkg-config; then
+    package=$(PKG_CONFIG_PATH=$out/prefix/lib/pkgconfig pkg-config --cflags --libs stratum)
+    # shellcheck disable=SC2086
+    gcc ${flags%-I*} bare_loop.c board.c board_host.c $package -o "$out/bare_loop-pkg-config"
+    "$out/bare_loop-pkg-config"
+  else
+    skipped "installed library by pkg-config: no pkg-config"
+  fi
+  if have cmake; then
+    rm -rf "$out/cmake"
+    cmake -S . -B "$out/cmake" -DCMAKE_PREFIX_PATH="$out/prefix" > "$out/cmake.txt" &&
+      cmake --build "$out/cmake" >> "$out/cmake.txt" || { cat "$out/cmake.txt"; exit 1; }
+    "$out/cmake/bare_loop"
+  else
+    skipped "installed library by CMake: no cmake"
+  fi
+fi
+
 step "host: memory, by valgrind"
 if command -v valgrind > /dev/null && command -v gcc > /dev/null; then
   for program in $programs; do
@@ -148,7 +186,7 @@ else
   for precision in f64 f32; do
     library "$precision" --target "$target"
     archive=$build/capi-$precision/$target/release/libstratum.a
-    for program in $programs; do
+    for program in $target_programs; do
       image=$out/$program-$precision.elf
       # shellcheck disable=SC2086
       arm-none-eabi-gcc $flags -ffreestanding -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard \
@@ -156,7 +194,7 @@ else
         "$program.c" board.c board_qemu.c "$archive" -lgcc -o "$image"
       # Settings, references and cycles cannot panic: the handler is not even linked.
       # (Texts of numbers are made by Rust's formatting, which has checks of its own.)
-      if [ "$program" != errors ] && arm-none-eabi-nm "$image" | grep -E 'panic|unwind'; then
+      if [ "$program" != errors ] && [ "$program" != stack ] && arm-none-eabi-nm "$image" | grep -E 'panic|unwind'; then
         fail "$program: a panic can be reached"
       fi
     done
@@ -166,7 +204,7 @@ else
       -c rtos_task.c -o "$out/rtos_task.o"
     arm-none-eabi-size "$out/bare_loop-$precision.elf"
     if command -v qemu-system-arm > /dev/null; then
-      for program in $programs; do
+      for program in $target_programs; do
         timeout 120 qemu-system-arm -M mps2-an500 -display none -serial null -monitor none \
           -semihosting-config enable=on,target=native \
           -kernel "$out/$program-$precision.elf" > "$out/target-$program-$precision" 2>&1 ||
@@ -174,6 +212,7 @@ else
       done
       cat "$out/target-bare_loop-$precision"
       tail -n 1 "$out/target-errors-$precision"
+      cat "$out/target-stack-$precision"
       same "target-replay-$precision" "$precision"
     else
       skipped "run on the target: no qemu-system-arm; linked only"

@@ -9,9 +9,10 @@
 #define CYCLE_US 2000u
 #define PLANNER_US 20000u
 
-/* Cycle and constructor need at most 8 KiB on a Cortex-M7 (docs/timing.md); the frames
- * of this file and of an interrupt that stacks the FPU's registers come on top. The
- * system has to save d8 to d15 on a switch of tasks. */
+/* Of the calls in the task stratum_reference_hold needs most, at most 10 KiB on a
+ * Cortex-M7 (stack.c); the frames of this file and of an interrupt that stacks the FPU's
+ * registers come on top. The system has to save d8 to d15 on a switch of tasks. The init
+ * functions need more: they run before, on main's stack. */
 #define CONTROL_STACK 12288u
 #define PLANNER_STACK 2048u
 

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds libstratum.a and puts it under a prefix with its header, and with what
+# pkg-config and CMake want of it. The prefix may be moved afterwards.
+#   controller-capi/install.sh PREFIX [--target TRIPLE] [--single]
+set -euo pipefail
+
+usage() { echo "usage: controller-capi/install.sh PREFIX [--target TRIPLE] [--single]" >&2; exit 2; }
+prefix= target= options=() precision=f64
+while [ $# -gt 0 ]; do
+  case $1 in
+    --single) precision=f32; options+=(--features single) ;;
+    --target) [ $# -gt 1 ] || usage; target=$2; options+=(--target "$2"); shift ;;
+    -*) usage ;;
+    *) [ -z "$prefix" ] || usage; prefix=$1 ;;
+  esac
+  shift
+done
+[ -n "$prefix" ] || usage
+mkdir -p "$prefix"
+prefix=$(cd "$prefix" && pwd)
+
+cd "$(dirname "$0")/.."
+cargo build -p controller-capi --lib --release --quiet "${options[@]}"
+version=$(cargo pkgid -p controller-capi)
+version=${version##*[#@]}
+cfg=$(rustc --print cfg ${target:+--target "$target"})
+pointer_bits=$(sed -n 's/^target_pointer_width="\(.*\)"$/\1/p' <<< "$cfg")
+# On a system Rust's library calls these; on bare metal there is nothing to call.
+libraries="-lpthread -ldl -lm"
+if grep -qx 'target_os="none"' <<< "$cfg"; then libraries=; fi
+
+# place TEMPLATE DIRECTORY
+place() {
+  mkdir -p "$2"
+  sed -e "s,@VERSION@,$version,g" -e "s,@PRECISION@,$precision,g" \
+    -e "s,@TARGET@,${target:-$(rustc --print host-tuple)},g" \
+    -e "s,@POINTER_BYTES@,$((pointer_bits / 8)),g" -e "s,@LIBRARIES@,$libraries,g" -e 's/ *$//' \
+    "controller-capi/package/$1.in" > "$2/$1"
+}
+place stratum.pc "$prefix/lib/pkgconfig"
+place stratum-config.cmake "$prefix/lib/cmake/stratum"
+place stratum-config-version.cmake "$prefix/lib/cmake/stratum"
+mkdir -p "$prefix/include"
+cp controller-capi/include/stratum.h "$prefix/include/"
+cp "${CARGO_TARGET_DIR:-target}/${target:+$target/}release/libstratum.a" "$prefix/lib/"
+echo "stratum $version, $precision, in $prefix"
