@@ -119,9 +119,23 @@ else
   skipped "C programs on the host: no gcc"
 fi
 
-step "host: C++"
+step "host: the header in other dialects"
+if command -v gcc > /dev/null; then
+  # Sizes are held by assertions in the header.
+  for dialect in "-std=c11 -fshort-enums" "-std=c17" "-std=c2x -fshort-enums"; do
+    # shellcheck disable=SC2086
+    gcc -fsyntax-only -x c $dialect -Wall -Wextra -Wpedantic -Wconversion -Werror \
+      "$crate/include/stratum.h"
+  done
+else
+  skipped "header in other dialects of C: no gcc"
+fi
 if command -v g++ > /dev/null; then
   library f64
+  for dialect in c++11 c++20; do
+    g++ -fsyntax-only -std=$dialect -Wall -Wextra -Wpedantic -Wconversion -Werror \
+      -I"$crate/include" header_twice.cpp
+  done
   g++ -std=c++17 -Wall -Wextra -Werror -I"$crate/include" header_twice.cpp \
     "$build/capi-f64/release/libstratum.a" -lpthread -ldl -lm -o "$out/header_twice"
   "$out/header_twice"
