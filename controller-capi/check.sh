@@ -232,4 +232,14 @@ else
       skipped "run on the target: no qemu-system-arm; linked only"
     fi
   done
+  if have pkg-config; then
+    installed "$out/prefix-m7" --target "$target"
+    package=$(PKG_CONFIG_PATH=$out/prefix-m7/lib/pkgconfig pkg-config --cflags --libs stratum)
+    # shellcheck disable=SC2086
+    arm-none-eabi-gcc ${flags%-I*} -ffreestanding -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard \
+      -nostdlib -T qemu.ld -Wl,--gc-sections,-z,noexecstack bare_loop.c board.c board_qemu.c \
+      $package -lgcc -o "$out/bare_loop-pkg-config.elf"
+    cmp "$out/bare_loop-pkg-config.elf" "$out/bare_loop-f64.elf" ||
+      fail "bare_loop by pkg-config is another program"
+  fi
 fi

@@ -10,6 +10,8 @@
 #![cfg_attr(target_os = "none", no_std)]
 // The contract of all pointers is one: `border`.
 #![allow(clippy::missing_safety_doc)]
+// What cbindgen reads in comments looks like links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;

@@ -268,13 +268,11 @@ impl StratumLevel {
             })
         };
         let link = usize::try_from(self.link).ok().and_then(Link::from_number);
-        let link = link.ok_or(refused(
-            codes::STRATUM_CONFIG_POINT_LINK,
-            "link",
-            self.link,
-            [1, DOF as u32],
-        ))?;
-        let axes = Axes::from_bits(self.axes).ok_or({
+        let link = link.ok_or_else(|| {
+            let code = codes::STRATUM_CONFIG_POINT_LINK;
+            refused(code, "link", self.link, [1, DOF as u32])
+        })?;
+        let axes = Axes::from_bits(self.axes).ok_or_else(|| {
             let code = match self.axes {
                 0 => codes::STRATUM_CONFIG_NO_AXIS,
                 _ => codes::STRATUM_CONFIG_CHOICE,
@@ -360,17 +358,11 @@ impl StratumSettings {
             },
             observer_gain: self.observer_gain,
             cycle_s: self.cycle_s,
-            dead_cycles: match u8::try_from(self.dead_cycles) {
-                Ok(cycles) => cycles,
-                Err(_) => {
-                    return Err(number(
-                        codes::STRATUM_CONFIG_DEAD_CYCLES,
-                        "dead_cycles",
-                        self.dead_cycles,
-                        [0, u32::from(DEAD_CYCLES_MAX)],
-                    ));
-                }
-            },
+            dead_cycles: u8::try_from(self.dead_cycles).map_err(|_| {
+                let allowed = [0, u32::from(DEAD_CYCLES_MAX)];
+                let code = codes::STRATUM_CONFIG_DEAD_CYCLES;
+                number(code, "dead_cycles", self.dead_cycles, allowed)
+            })?,
         })
     }
 
@@ -379,17 +371,11 @@ impl StratumSettings {
         let unused = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let mut tasks = [unused; STRATUM_LEVELS];
         let count = usize::try_from(self.level_count).unwrap_or(usize::MAX);
-        let used = match tasks.get_mut(..count) {
-            Some(used) if count > 0 => used,
-            _ => {
-                return Err(number(
-                    codes::STRATUM_CONFIG_LEVELS,
-                    "level_count",
-                    self.level_count,
-                    [1, STRATUM_LEVELS as u32],
-                ));
-            }
-        };
+        let used = tasks.get_mut(..count).filter(|used| !used.is_empty());
+        let used = used.ok_or_else(|| {
+            let (code, allowed) = (codes::STRATUM_CONFIG_LEVELS, [1, STRATUM_LEVELS as u32]);
+            number(code, "level_count", self.level_count, allowed)
+        })?;
         for (number, (task, level)) in (1..).zip(used.iter_mut().zip(&self.levels)) {
             *task = level.task(number)?;
         }
