@@ -3,9 +3,8 @@
 use super::config::ControllerConfig;
 use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
-use super::stages::{StageName, torque_demand};
+use super::stages::{StageName, kinematics_at, torque_demand};
 use super::usable::usable;
-use crate::arm::kinematics::Kinematics;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
 use crate::fault::{Fault, Status};
@@ -13,7 +12,7 @@ use crate::joint::{JointState, JointVector, zeros};
 use crate::law::null_space::Compliance;
 use crate::law::sampling::DampingRate;
 use crate::real::Real;
-use crate::task::{Levels, Reference, Target};
+use crate::task::{Levels, Reference};
 
 /// The immutable part: arm, tasks, gains and limits, validated once and converted to
 /// the precision of the cycle. One controller can drive any number of [`State`]s.
@@ -111,27 +110,13 @@ impl<T: Real> Controller<T> {
     /// velocity of every level, no acceleration, q_d = q.
     #[must_use]
     pub fn moving_reference(&self, joints: &JointState<T>) -> Reference<T> {
-        let mut data = Data::new();
-        let measurement = Measurement {
-            q: joints.q,
-            dq: joints.dq,
-            interval_s: self.cycle_s,
-        };
+        let kinematics = kinematics_at(self, joints);
         let mut reference = Reference::hold(self.level_count(), joints.q);
-        let input = Input {
-            measurement: &measurement,
-            reference: &reference,
-        };
-        self.evaluate_until(StageName::Kinematics, &input, &mut data);
-        self.set_targets(&data.kinematics, reference.targets_mut());
-        reference
-    }
-
-    /// Each level as it moves now.
-    fn set_targets(&self, kinematics: &Kinematics<T>, targets: &mut [Target<T>]) {
-        for (level, target) in self.levels.as_slice().iter().zip(targets) {
-            *target = level.tracked.target(kinematics);
+        let levels = self.levels.as_slice().iter();
+        for (target, level) in reference.targets_mut().iter_mut().zip(levels) {
+            *target = level.tracked.target(&kinematics);
         }
+        reference
     }
 
     /// One cycle. Never fails and never panics: with a measurement or reference

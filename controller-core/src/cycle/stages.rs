@@ -3,6 +3,7 @@
 
 use super::controller::Controller;
 use super::data::{Data, Input};
+use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
 use crate::law::control::TorqueDemand;
 use crate::law::motion::MotionSplit;
@@ -98,6 +99,16 @@ fn joint_state<T: Real>(_: &Controller<T>, input: &Input<'_, T>, data: &mut Data
 #[inline(never)]
 fn kinematics<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.kinematics.update(&controller.arm, &data.joints);
+}
+
+/// The result of that stage alone, for references: they need no more of a cycle.
+pub(super) fn kinematics_at<T: Real>(
+    controller: &Controller<T>,
+    joints: &JointState<T>,
+) -> Kinematics<T> {
+    let mut kinematics = Kinematics::new();
+    kinematics.update(&controller.arm, joints);
+    kinematics
 }
 
 #[inline(never)]
