@@ -1,11 +1,7 @@
-//! The reference configurations of the experiments, in either precision.
+//! The reference configurations of the experiments.
 
-use controller_core::config::ControllerConfig;
-use controller_core::joint::{JointVector, diagonal};
-use controller_core::kinematics::LinkPoint;
-use controller_core::law::{NullDamping, NullSpace, Posture};
-use controller_core::real::Real;
-use controller_core::task::{Axes, Task};
+use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
+use controller_core::{Axes, ControllerConfig, LinkPoint, NullSpace, Task, TaskGains, TaskSet};
 
 /// D \[Nms/rad\].
 pub const REFERENCE_DAMPING: [f64; 7] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
@@ -13,47 +9,42 @@ pub const REFERENCE_DAMPING: [f64; 7] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
 /// K_q \[Nm/rad\].
 pub const REFERENCE_STIFFNESS: [f64; 7] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2];
 
-/// The point of a task: link and offset in its frame \[m\].
-pub type Point = (usize, [f64; 3]);
+/// K_p = 400 /s2, K_d = 40 /s on every axis.
+pub const REFERENCE_GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
 
 /// 0.078 m beyond the wrist.
-pub const FLANGE: Point = (7, [0.0, 0.0, 0.078]);
+pub const FLANGE: LinkPoint = LWR_IV_FLANGE;
 /// End of the upper arm.
-pub const ELBOW: Point = (3, [0.0, 0.0, 0.0]);
+pub const ELBOW: LinkPoint = LWR_IV_POINTS[1].point;
 /// End of the forearm.
-pub const WRIST: Point = (5, [0.0, 0.0, 0.0]);
+pub const WRIST: LinkPoint = LWR_IV_POINTS[3].point;
 
-/// Reference gains on the given levels, 2 ms cycle.
+/// The tasks as levels, the null space of the experiments, 2 ms cycle.
+///
+/// # Panics
+/// Tasks that make no set.
 #[must_use]
-pub fn reference<T: Real>(levels: &[(Point, Axes)]) -> ControllerConfig<T> {
-    let task = |&((link, offset), axes): &(Point, Axes)| {
-        let point = LinkPoint {
-            link,
-            offset: offset.map(T::from_f64).into(),
-        };
-        Task::uniform(point, axes, 400.0, 40.0)
-    };
+pub fn with_tasks(tasks: &[Task]) -> ControllerConfig {
     ControllerConfig {
-        tasks: levels.iter().map(task).collect(),
-        null_space: NullSpace {
-            stiffness: diagonal(REFERENCE_STIFFNESS),
-            damping: NullDamping::Joint(diagonal(REFERENCE_DAMPING)),
-            posture: Posture::Constant,
-        },
-        observer_gain: JointVector::from([T::from_f64(50.0); 7]),
-        cycle_s: T::from_f64(0.002),
+        tasks: TaskSet::new(tasks).expect("tasks that make a set"),
+        null_space: NullSpace::diagonal(REFERENCE_STIFFNESS, REFERENCE_DAMPING),
+        observer_gain: [50.0; 7],
+        cycle_s: 0.002,
         dead_cycles: 0,
     }
 }
 
 /// Flange position above a compliant null space.
 #[must_use]
-pub fn two_level<T: Real>() -> ControllerConfig<T> {
-    reference(&[(FLANGE, Axes::XYZ)])
+pub fn two_level() -> ControllerConfig {
+    with_tasks(&[Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS)])
 }
 
 /// Flange position, then the wrist in the horizontal plane.
 #[must_use]
-pub fn three_level<T: Real>() -> ControllerConfig<T> {
-    reference(&[(FLANGE, Axes::XYZ), (WRIST, Axes::XY)])
+pub fn three_level() -> ControllerConfig {
+    with_tasks(&[
+        Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS),
+        Task::position(WRIST, Axes::XY, REFERENCE_GAINS),
+    ])
 }

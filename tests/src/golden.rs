@@ -2,8 +2,8 @@
 
 #![expect(missing_docs, reason = "fields as in the files, described there")]
 
+use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::joint::{DOF, JointMatrix, JointState};
-use controller_core::model::{ArmParameters, LinkParameters};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

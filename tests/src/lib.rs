@@ -1,9 +1,11 @@
 //! Helpers shared by the workspace tests.
 
-use controller_core::dynamics::Dynamics;
+use controller_core::arm::dynamics::Dynamics;
+use controller_core::arm::kinematics::Kinematics;
+use controller_core::arm::{ArmModel, LWR_IV};
 use controller_core::joint::{DOF, JointState, JointVector};
-use controller_core::kinematics::Kinematics;
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::real::Real;
+use controller_core::{Controller, ControllerConfig};
 
 pub mod config;
 pub mod golden;
@@ -16,14 +18,24 @@ pub fn lwr() -> ArmModel<f64> {
     ArmModel::new(&LWR_IV).expect("the built-in arm is valid")
 }
 
+/// A controller of the arm under test, in either precision.
+///
+/// # Panics
+/// A configuration that is refused.
+#[must_use]
+pub fn controller<T: Real>(config: &ControllerConfig) -> Controller<T> {
+    Controller::new(&LWR_IV, config).expect("a valid configuration")
+}
+
 /// Kinematics and dynamics of the core at one state.
 #[must_use]
-pub fn evaluate(
-    model: &ArmModel<f64>,
-    state: &JointState<f64>,
-) -> (Kinematics<f64>, Dynamics<f64>) {
-    let kinematics = Kinematics::new(model, state);
-    let dynamics = Dynamics::new(model, &kinematics, state);
+pub fn evaluate<T: Real>(
+    model: &ArmModel<T>,
+    state: &JointState<T>,
+) -> (Kinematics<T>, Dynamics<T>) {
+    let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
+    kinematics.update(model, state);
+    dynamics.update(model, &kinematics, state);
     (kinematics, dynamics)
 }
 

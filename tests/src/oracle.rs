@@ -30,7 +30,7 @@ pub struct LevelTerms {
     /// dJ_i/dt.
     pub jacobian_dot: Matrix,
     /// (12) before the bias: ddx_d + K_d dx_err + K_p x_err.
-    pub wanted: Matrix,
+    pub commanded: Matrix,
 }
 
 /// Everything the formulas need to know about one instant.
@@ -268,7 +268,7 @@ impl Oracle {
             } else {
                 &level.jbar_dot * dq
             };
-            let mut acceleration = &terms.wanted - bias;
+            let mut acceleration = &terms.commanded - bias;
             if variant.coupled {
                 acceleration = acceleration - &terms.jacobian * &above;
             }

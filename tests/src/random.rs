@@ -1,7 +1,7 @@
 //! Seeded random states of the arm.
 
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
-use controller_core::model::LWR_IV;
 use hil_sim::plant::noise::Rng;
 
 /// A source of random states within the limits of the arm.

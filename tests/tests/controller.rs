@@ -6,64 +6,45 @@ mod configuration;
 #[path = "controller/plausibility.rs"]
 mod plausibility;
 
-use controller_core::controller::{Controller, ControllerState, Step};
-use controller_core::fault::{Flags, Quantity};
-use controller_core::hierarchy::RANK_THRESHOLD;
-use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::law::{Posture, TorqueDemand};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::arm::LWR_IV;
+use controller_core::cycle::record::Recorder;
+use controller_core::fault::{IndexSet, Quantity};
+use controller_core::joint::{JointState, JointVector, Vector3, zeros};
+use controller_core::law::hierarchy::RANK_THRESHOLD;
+use controller_core::law::motion::MotionSplit;
+use controller_core::law::null_space::Posture;
 use controller_core::real::Real;
-use controller_core::record::Recorder;
-use controller_core::task::TaskReference;
-use stratum_tests::config::{three_level, two_level};
+use controller_core::{Controller, Measurement, Reference, State, Step, Target};
+use stratum_tests::config::{FLANGE, three_level, two_level};
 use stratum_tests::oracle::closed_loop::{ClosedLoop, TWO_LEVEL_START, circle, posture};
-use stratum_tests::{evaluate, lwr};
+use stratum_tests::{controller, evaluate};
 
 /// A state and a recorder in static memory: both are built by the compiler.
-static STATE: ControllerState<f32> = ControllerState::new();
+static STATE: State<f32> = State::new();
 static RECORDER: Recorder<f32, 4> = Recorder::new();
 
 fn at<T: Real>(q: JointVector<f64>) -> Measurement<T> {
     Measurement {
         q: q.map(T::from_f64),
-        dq: controller_core::joint::zeros(),
+        dq: zeros(),
         interval_s: T::from_f64(0.002),
     }
 }
 
-fn resting<T: Real>(levels: usize, q: &JointVector<f64>) -> Reference<T> {
-    let x = evaluate(
-        &lwr(),
-        &JointState {
-            q: *q,
-            dq: JointVector::zeros(),
-        },
-    );
-    let x = x.0.point(&two_level::<f64>().tasks[0].point).x;
-    let task = TaskReference::rest(x.map(T::from_f64));
-    Reference {
-        tasks: std::iter::repeat_n(task, levels).collect(),
-        posture: q.map(T::from_f64),
-    }
+fn resting<T: Real>(controller: &Controller<T>, q: &JointVector<f64>) -> Reference<T> {
+    controller.rest_reference(&q.map(T::from_f64))
 }
 
 fn start() -> JointVector<f64> {
     posture(TWO_LEVEL_START)
 }
 
-fn two_levels<T: Real>() -> (ArmModel<T>, Controller<T>) {
-    let model = ArmModel::new(&LWR_IV).expect("the built-in arm is valid");
-    let controller = Controller::new(&model, &two_level()).expect("a valid configuration");
-    (model, controller)
-}
-
 #[test]
 fn state_and_recorder_can_be_static() {
     let mut state = STATE.clone();
     assert!(state.fault().is_none() && RECORDER.iter().count() == 0);
-    let (_, controller) = two_levels();
-    let step = controller.step(&mut state, &at(start()), &resting(1, &start()));
+    let controller = controller(&two_level());
+    let step = controller.step(&mut state, &at(start()), &resting(&controller, &start()));
     assert!(step.status.is_clear(), "{:?}", step.status);
 }
 
@@ -72,23 +53,18 @@ fn state_and_recorder_can_be_static() {
 /// crosses the threshold; the other rows never do.
 #[test]
 fn a_row_that_cannot_be_resolved_gets_a_flag_and_no_acceleration() {
-    let (_, controller) = two_levels::<f64>();
+    let controller = controller::<f64>(&two_level());
     let (mut flagged, mut free) = (0, 0);
     for step in 0..=140 {
         let elbow = libm::exp10(-f64::from(step) / 20.0);
         // A stretched arm along x: x is the radial direction.
         let q = JointVector::from([0.0, std::f64::consts::FRAC_PI_2, 0.0, elbow, 0.0, 0.0, 0.0]);
-        let mut reference = resting(1, &start());
+        let mut reference = resting(&controller, &start());
         reference.posture = q;
-        let mut seen = None;
-        let step = controller.step_with(&mut ControllerState::new(), &at(q), &reference, |cycle| {
-            seen = Some((
-                cycle.hierarchy.conditioning(),
-                cycle.command.task_acceleration,
-            ));
-            TorqueDemand::hierarchical(cycle)
-        });
-        let (conditioning, y) = seen.expect("a cycle");
+        let mut state = State::new();
+        let step = controller.step(&mut state, &at(q), &reference);
+        let conditioning = state.data().hierarchy.conditioning();
+        let y = state.data().control.task_acceleration;
         assert!(step.status.fault.is_none());
         assert!(step.torque.iter().all(|torque| torque.is_finite()));
         for k in 0..3 {
@@ -108,18 +84,18 @@ fn a_row_that_cannot_be_resolved_gets_a_flag_and_no_acceleration() {
 /// anew behind it.
 #[test]
 fn a_fault_is_latched_and_the_arm_held_until_the_reset() {
-    let (model, controller) = two_levels::<f64>();
+    let controller = controller::<f64>(&two_level());
     let mut closed = ClosedLoop::<f64>::new(&two_level(), start(), &[circle(0.1, 3.0)]);
     for _ in 0..600 {
         let _ = closed.step();
     }
     let state = *closed.plant.state();
-    let gravity = evaluate(&model, &state).1.gravity;
+    let gravity = evaluate(controller.arm(), &state).1.gravity;
     let good = Measurement {
         dq: state.dq,
         ..at(state.q)
     };
-    let reference = resting(1, &state.q);
+    let reference = resting(&controller, &state.q);
     let before = controller.step(&mut closed.state, &good, &reference);
     assert!(before.status.fault.is_none() && before.residual.amax() > 0.0);
 
@@ -139,7 +115,7 @@ fn a_fault_is_latched_and_the_arm_held_until_the_reset() {
         let step = controller.step(&mut closed.state, &measurement, &reference);
         assert_eq!(
             (step.torque, step.status.saturated, step.status.rank),
-            (gravity, Flags::NONE, Flags::NONE)
+            (gravity, IndexSet::NONE, IndexSet::NONE)
         );
         let latched = step.status.fault.expect("latched");
         assert_eq!((latched.quantity, latched.index), (Quantity::Speed, 1));
@@ -150,14 +126,14 @@ fn a_fault_is_latched_and_the_arm_held_until_the_reset() {
     let after = controller.step(&mut closed.state, &good, &reference);
     assert!(after.status.is_clear());
     assert_eq!(after.residual, JointVector::zeros());
-    let fresh = controller.step(&mut ControllerState::new(), &good, &reference);
+    let fresh = controller.step(&mut State::new(), &good, &reference);
     assert_eq!(after, fresh, "nothing remembered");
     // A fault right behind a reset still holds the last plausible posture.
     closed.state.reset();
     let again = controller.step(&mut closed.state, &bad, &reference);
     assert_eq!(again.torque, gravity);
     // Nothing known, nothing held.
-    let unknown = controller.step(&mut ControllerState::new(), &bad, &reference);
+    let unknown = controller.step(&mut State::new(), &bad, &reference);
     assert_eq!(unknown.torque, JointVector::zeros());
 }
 
@@ -168,17 +144,24 @@ fn saturated_joints_are_flagged_and_cut_with_their_sign() {
     let mut weak = LWR_IV;
     weak.links[1].torque_limit = 10.0;
     weak.links[3].torque_limit = 2.0;
-    let model = ArmModel::<f64>::new(&weak).expect("a weak arm");
-    let controller = Controller::new(&model, &three_level()).expect("a valid configuration");
-    let mut reference = resting(2, &start());
-    reference.tasks[0].ddx = Vector3::from([3.0, -2.0, 4.0]);
-    let mut state = ControllerState::new();
-    let mut demand = JointVector::zeros();
-    let step: Step<f64> = controller.step_with(&mut state, &at(start()), &reference, |cycle| {
-        let torque = TorqueDemand::hierarchical(cycle);
-        demand = torque.0;
-        torque
-    });
+    let controller = Controller::<f64>::new(&weak, &three_level()).expect("a weak arm");
+    let model = controller.arm();
+    let resting = JointState {
+        q: start(),
+        dq: JointVector::zeros(),
+    };
+    let (kinematics, dynamics) = evaluate(model, &resting);
+    let x = kinematics.point(FLANGE.link, &FLANGE.offset.into()).x;
+    let pushing = Target::Position {
+        x,
+        dx: Vector3::zeros(),
+        ddx: Vector3::from([3.0, -2.0, 4.0]),
+    };
+    // The wrist is asked to be where the flange is.
+    let reference = Reference::new([pushing, Target::position(x)], start());
+    let mut state = State::new();
+    let step: Step<f64> = controller.step(&mut state, &at(start()), &reference);
+    let demand = state.data().demand.0;
     let mut cut = 0;
     for i in 0..7 {
         let limit = model.torque_limit()[i];
@@ -188,15 +171,6 @@ fn saturated_joints_are_flagged_and_cut_with_their_sign() {
         cut += u32::from(demand[i].abs() > limit);
     }
     assert!((2..7).contains(&cut), "{demand}");
-    let gravity = evaluate(
-        &model,
-        &JointState {
-            q: start(),
-            dq: JointVector::zeros(),
-        },
-    )
-    .1
-    .gravity;
     let bad = Measurement {
         interval_s: 1.0,
         ..at(start())
@@ -205,7 +179,7 @@ fn saturated_joints_are_flagged_and_cut_with_their_sign() {
     let limit = model.torque_limit();
     assert_eq!(
         held,
-        JointVector::from_fn(|i, _| gravity[i].clamp(-limit[i], limit[i]))
+        JointVector::from_fn(|i, _| dynamics.gravity[i].clamp(-limit[i], limit[i]))
     );
     assert_eq!(
         held[1].abs(),
@@ -219,16 +193,15 @@ fn saturated_joints_are_flagged_and_cut_with_their_sign() {
 /// reference again after a reset.
 #[test]
 fn the_desired_posture_is_that_of_its_mode() {
-    let model = lwr();
     for mode in [
         Posture::Constant,
         Posture::IntegralCoupled,
         Posture::IntegralUncoupled,
     ] {
-        let mut config = three_level::<f64>();
+        let mut config = three_level();
         config.null_space.posture = mode;
-        let controller = Controller::new(&model, &config).expect("a valid configuration");
-        let mut state = ControllerState::new();
+        let controller = controller(&config);
+        let mut state = State::new();
         let mut expected: Option<(JointVector<f64>, JointVector<f64>)> = None;
         for cycle in 0..20 {
             if cycle == 12 {
@@ -242,28 +215,27 @@ fn the_desired_posture_is_that_of_its_mode() {
                 interval_s,
                 ..at(start())
             };
-            let mut reference = resting(2, &start());
+            let mut reference = resting(&controller, &start());
             reference.posture.add_scalar_mut(0.01 * f64::from(cycle));
-            let mut used = None;
-            let _ = controller.step_with(&mut state, &measurement, &reference, |cycle| {
-                let rate = controller_core::law::posture_rate(
-                    mode,
-                    cycle.dynamics,
-                    cycle.rows,
-                    cycle.hierarchy,
-                    cycle.motion,
-                    cycle.state,
-                );
-                used = Some((*cycle.posture, rate));
-                TorqueDemand::hierarchical(cycle)
-            });
-            let (q_d, rate) = used.expect("a cycle");
-            let wanted = match (mode, expected) {
+            let step = controller.step(&mut state, &measurement, &reference);
+            assert_eq!(step.status.fault, None);
+            let data = state.data();
+            let q_d = data.posture;
+            let rate = match mode {
+                Posture::IntegralUncoupled => MotionSplit::uncoupled_task_velocity(
+                    &data.dynamics,
+                    &data.rows,
+                    &data.hierarchy,
+                    &data.joints,
+                ),
+                _ => data.motion.task_velocity,
+            };
+            let right = match (mode, expected) {
                 (Posture::Constant, _) | (_, None) => reference.posture,
                 (_, Some((last, last_rate))) => last + (rate + last_rate) * (interval_s / 2.0),
             };
             // One rounding of an angle.
-            assert!((q_d - wanted).amax() < 1e-15, "{mode:?} {cycle}");
+            assert!((q_d - right).amax() < 1e-15, "{mode:?} {cycle}");
             expected = Some((q_d, rate));
         }
     }
@@ -272,9 +244,9 @@ fn the_desired_posture_is_that_of_its_mode() {
 /// The ring keeps the last cycles in order with their numbers, faults included.
 #[test]
 fn the_recorder_keeps_the_last_cycles() {
-    let (_, controller) = two_levels::<f64>();
+    let controller = controller::<f64>(&two_level());
     let mut recorder: Recorder<f64, 4> = Recorder::new();
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     for cycle in 0..7 {
         let mut measurement = at(start());
         measurement.interval_s = if cycle == 5 {
@@ -282,7 +254,7 @@ fn the_recorder_keeps_the_last_cycles() {
         } else {
             0.002 + 1e-4 * f64::from(cycle)
         };
-        let step = controller.step(&mut state, &measurement, &resting(1, &start()));
+        let step = controller.step(&mut state, &measurement, &resting(&controller, &start()));
         recorder.push(&measurement, &step);
         assert_eq!(recorder.iter().count(), 4.min(cycle as usize + 1));
     }

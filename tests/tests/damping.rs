@@ -1,14 +1,18 @@
 //! The damping guard: its postures are the worst ones, and its bound is where a
 //! sampled loop really becomes unstable.
 
-use controller_core::config::{ConfigError, ControllerConfig};
-use controller_core::controller::Controller;
-use controller_core::damping::{bound, fastest_mode, mode_at};
-use controller_core::joint::{JointMatrix, diagonal};
+use controller_core::arm::LWR_IV;
+use controller_core::joint::{JointMatrix, JointState, JointVector};
+use controller_core::law::sampling::{bound, fastest_mode, mode_at};
+use controller_core::{ConfigError, Controller, ControllerConfig};
 use hil_sim::plant::noise::Rng;
 use stratum_tests::config::{REFERENCE_DAMPING, two_level};
 use stratum_tests::random::States;
 use stratum_tests::{JOINTS, lwr};
+
+fn diagonal(values: [f64; 7]) -> JointMatrix<f64> {
+    JointMatrix::from_diagonal(&values.into())
+}
 
 /// 20,000 random postures and as many near the stretched arm, where the worst
 /// ones lie: none exceeds the committed set by more than 0.1 % (the set is
@@ -44,9 +48,7 @@ fn fastest_mode_is_the_largest_rayleigh_quotient() {
         let state = states.state();
         let mode = mode_at(&model, &damping, state.q.into());
         let mass_matrix = stratum_tests::evaluate(&model, &state).1.mass_matrix;
-        let quotient = |x: &controller_core::joint::JointVector<f64>| {
-            x.dot(&(damping * x)) / x.dot(&(mass_matrix * x))
-        };
+        let quotient = |x: &JointVector<f64>| x.dot(&(damping * x)) / x.dot(&(mass_matrix * x));
         for _ in 0..50 {
             assert!(quotient(&states.vector()) <= mode.rate * (1.0 + 1e-9));
         }
@@ -73,7 +75,7 @@ fn reference_damping_passes_the_direct_bound_and_not_the_dead_time_bound() {
         dead_cycles: 1,
         ..direct
     };
-    match Controller::new(&model, &delayed) {
+    match Controller::<f64>::new(&LWR_IV, &delayed) {
         Err(ConfigError::Damping { value, bound, .. }) => {
             assert!(value > bound && (bound - 1.0).abs() < 1e-12)
         }
@@ -109,9 +111,9 @@ fn inertia_shaped_damping_has_one_rate() {
     let model = lwr();
     let mut rng = Rng::new(3, 1);
     let q = [0.0; 7].map(|_: f64| rng.uniform());
-    let state = controller_core::joint::JointState {
+    let state = JointState {
         q: q.into(),
-        dq: nalgebra::zero(),
+        dq: JointVector::zeros(),
     };
     let damping = stratum_tests::evaluate(&model, &state).1.mass_matrix * 10.0;
     assert!((mode_at(&model, &damping, q).rate - 10.0).abs() < 1e-9);

@@ -4,10 +4,10 @@
 #[path = "errata/closed_loop.rs"]
 mod closed_loop;
 
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
-use controller_core::model::LWR_IV;
 use hil_sim::plant::PlantModel;
-use stratum_tests::lwr;
+use stratum_tests::controller;
 use stratum_tests::oracle::matrix::Matrix;
 use stratum_tests::oracle::sample::{SPLITS, Sample, Spec, Wish, configuration};
 use stratum_tests::oracle::{Basis, Oracle, Variant};
@@ -22,15 +22,15 @@ fn split(name: &str) -> &'static [Spec] {
 
 /// Regular random states of a split, with the oracle on them.
 fn states(name: &str, seed: u64, mut check: impl FnMut(&Sample, &Oracle, &mut States)) {
-    let (model, config) = (lwr(), configuration(split(name)));
+    let controller = controller(&configuration(split(name)));
     let mut random = States::new(seed);
     let (mut checked, mut tries) = (0, 0);
     while checked < STATES {
         tries += 1;
         assert!(tries < 100 * STATES, "{name}: every state is singular");
-        let state = random.state();
-        let wish = Wish::random(&model, &config, &state, &mut random);
-        let sample = Sample::new(&model, &config, state, &wish);
+        let joints = random.state();
+        let wish = Wish::random(&controller, &joints, &mut random);
+        let sample = Sample::new(&controller, joints, &wish);
         let oracle = Oracle::new(sample.terms());
         // Far from singular: the errata are no matter of conditioning.
         if oracle.conditioning() < 1e6 {
@@ -46,7 +46,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 fn accelerations(sample: &Sample, torque: &Matrix) -> Matrix {
-    let JointState { q, dq } = &sample.state;
+    let JointState { q, dq } = &sample.data.joints;
     let torque = JointVector::from_fn(|i, _| torque.at(i, 0));
     let plant = PlantModel::new(&LWR_IV);
     Matrix::of(&plant.forward_dynamics(q, dq, &torque, &JointVector::zeros()))
@@ -60,9 +60,8 @@ fn accelerations(sample: &Sample, torque: &Matrix) -> Matrix {
 #[test]
 fn erratum_2_mu_of_eq_33_is_a_matrix_and_not_the_vector_of_eq_28() {
     const STEP: f64 = 1e-6;
-    let model = lwr();
     for name in ["3", "3+3", "3+2"] {
-        let config = configuration(split(name));
+        let controller = controller(&configuration(split(name)));
         let mut differences = Vec::new();
         states(name, 2, |sample, oracle, _| {
             let null = &oracle.null;
@@ -79,16 +78,10 @@ fn erratum_2_mu_of_eq_33_is_a_matrix_and_not_the_vector_of_eq_28() {
             }
             // Lambda_l along the motion, the columns of (20) held.
             let [ahead, behind] = [STEP, -STEP].map(|step| {
-                let state = JointState {
-                    q: sample.state.q + sample.state.dq * step,
-                    ..sample.state
-                };
-                let wish = Wish {
-                    tasks: Vec::new(),
-                    posture: state.q,
-                    residual: JointVector::zeros(),
-                };
-                let terms = Sample::new(&model, &config, state, &wish).terms();
+                let JointState { q, dq } = sample.data.joints;
+                let q = q + dq * step;
+                let wish = Wish::rest(&controller, q);
+                let terms = Sample::new(&controller, JointState { q, dq }, &wish).terms();
                 let (jacobian, jacobian_dot) = terms.stacked(terms.levels.len());
                 let z = Basis::with_columns(&jacobian, &jacobian_dot, &oracle.basis.columns).z;
                 &z * &terms.mass * &z.t()
@@ -121,7 +114,7 @@ fn erratum_3_levels_below_a_moving_one_need_the_coupling_of_eq_8() {
             let ddq = accelerations(sample, &oracle.torque(*variant));
             let mut missed = oracle.terms.levels.iter().map(|level| {
                 let achieved = &level.jacobian * &ddq + &level.jacobian_dot * &oracle.terms.dq;
-                (achieved - &level.wanted).amax()
+                (achieved - &level.commanded).amax()
             });
             let first = missed.next().expect("level 1");
             // cond M times rounding of accelerations up to 1e4 rad/s2.
@@ -227,15 +220,12 @@ fn erratum_6_the_null_space_velocity_is_jbar_dq_and_not_z_dq() {
 #[test]
 fn erratum_7_the_first_three_columns_are_singular_everywhere() {
     let (mut fixed, mut largest) = (Vec::new(), 0.0f64);
-    let model = lwr();
-    let config = configuration(split("3"));
+    let controller = controller(&configuration(split("3")));
     let mut random = States::new(7);
     for _ in 0..STATES {
-        let state = random.state();
-        let wish = Wish::random(&model, &config, &state, &mut random);
-        let (jacobian, _) = Sample::new(&model, &config, state, &wish)
-            .terms()
-            .stacked(1);
+        let joints = random.state();
+        let wish = Wish::random(&controller, &joints, &mut random);
+        let (jacobian, _) = Sample::new(&controller, joints, &wish).terms().stacked(1);
         let volume = |columns: &[usize]| {
             let (_, determinant) = jacobian.selected(columns).inverse_and_determinant();
             if determinant.is_nan() {
@@ -316,7 +306,7 @@ fn erratum_11_the_residual_acts_on_lower_levels_through_j_and_not_jbar() {
     let plant = PlantModel::new(&LWR_IV);
     states("3+2", 11, |sample, oracle, _| {
         let push = plant.point_torque(
-            &sample.state.q,
+            &sample.data.joints.q,
             3,
             &[0.0; 3].into(),
             &[0.0, 35.0, 0.0].into(),
@@ -327,7 +317,7 @@ fn erratum_11_the_residual_acts_on_lower_levels_through_j_and_not_jbar() {
         let error = &oracle.mass_inverse * (&terms.residual + &tau_ext);
         for (level, projected) in terms.levels.iter().zip(&oracle.levels) {
             let achieved = &level.jacobian * &ddq + &level.jacobian_dot * &terms.dq;
-            let left = &level.wanted - achieved;
+            let left = &level.commanded - achieved;
             let exact = (&left - &level.jacobian * &error).amax() / (1.0 + ddq.amax());
             assert!(exact < 1e-11, "{exact:e}");
             differences.push((left - &projected.jbar * &error).amax());

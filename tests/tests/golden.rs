@@ -1,13 +1,12 @@
 //! The core's kinematics and dynamics against Pinocchio at 200 states, both
 //! precisions.
 
-use controller_core::dynamics::Dynamics;
+use controller_core::LinkPoint;
+use controller_core::arm::{ArmModel, LWR_IV_POINTS};
 use controller_core::joint::{JointState, JointVector};
-use controller_core::kinematics::{Kinematics, LinkPoint};
-use controller_core::model::{ArmModel, LWR_IV_POINTS};
 use controller_core::real::Real;
 use stratum_tests::golden::{Golden, GoldenArm, Worst};
-use stratum_tests::relative;
+use stratum_tests::{evaluate, relative};
 
 /// Errors relative to the largest entry. The sums behind an entry have about a
 /// hundred terms of its size: 100 units of rounding of the precision.
@@ -25,8 +24,7 @@ fn check<T: Real>(arm: &GoldenArm, epsilon: f64) {
             q: JointVector::from(golden.q.map(T::from_f64)),
             dq: JointVector::from(golden.dq.map(T::from_f64)),
         };
-        let kinematics = Kinematics::new(&model, &state);
-        let dynamics = Dynamics::new(&model, &kinematics, &state);
+        let (kinematics, dynamics) = evaluate(&model, &state);
         let wide = dynamics.mass_matrix.map(Real::to_f64);
         mass_matrix.add(relative(&wide, &golden.mass_matrix(), 1e-3));
         if let Some(expected) = &golden.coriolis_matrix {
@@ -53,12 +51,9 @@ fn check<T: Real>(arm: &GoldenArm, epsilon: f64) {
             let Some(expected) = golden.points.get(point.name) else {
                 continue;
             };
-            let place = LinkPoint {
-                link: point.link,
-                offset: point.offset.map(T::from_f64).into(),
-            };
-            let motion = kinematics.point(&place);
-            let rows = kinematics.point_jacobian(place.link, &motion);
+            let LinkPoint { link, offset } = point.point;
+            let motion = kinematics.point(link, &offset.map(T::from_f64).into());
+            let rows = kinematics.point_jacobian(link, &motion);
             points.add(relative(
                 &motion.x.map(Real::to_f64),
                 &expected.position,

@@ -2,11 +2,14 @@
 //! random states of every split of 1 to 7 rows. Only quantities that do not
 //! depend on the choice of a basis are compared directly.
 
-use controller_core::controller::Controller;
-use controller_core::joint::{JointMatrix, JointVector};
-use controller_core::law::{Posture, posture_rate};
+use controller_core::cycle::{Data, Input};
+use controller_core::joint::{JointMatrix, JointState, JointVector};
+use controller_core::law::hierarchy::Hierarchy;
+use controller_core::law::null_space::Posture;
+use controller_core::linalg::Cholesky;
+use controller_core::{Measurement, Reference, TaskSet};
+use stratum_tests::controller;
 use stratum_tests::golden::Worst;
-use stratum_tests::lwr;
 use stratum_tests::oracle::matrix::Matrix;
 use stratum_tests::oracle::sample::{SPLITS, Sample, Spec, Wish, configuration};
 use stratum_tests::oracle::{Oracle, Variant};
@@ -30,18 +33,16 @@ fn joint(vector: &JointVector<f64>) -> Matrix {
 }
 
 fn every_split(seed: u64, mut check: impl FnMut(&str, &Sample, &Oracle, f64)) {
-    let model = lwr();
     for (index, (name, split)) in SPLITS.iter().enumerate() {
-        let config = configuration(split);
-        Controller::new(&model, &config).expect("a valid configuration");
+        let controller = controller(&configuration(split));
         let mut random = States::new(seed + index as u64);
         let (mut checked, mut singular) = (0, 0);
         while checked < STATES {
-            let state = random.state();
-            let wish = Wish::random(&model, &config, &state, &mut random);
-            let sample = Sample::new(&model, &config, state, &wish);
+            let joints = random.state();
+            let wish = Wish::random(&controller, &joints, &mut random);
+            let sample = Sample::new(&controller, joints, &wish);
             // The printed formulas know no rank rule.
-            if sample.hierarchy.deficient().any() {
+            if sample.data.hierarchy.deficient().any() {
                 singular += 1;
                 assert!(
                     singular <= STATES / 100,
@@ -58,7 +59,7 @@ fn every_split(seed: u64, mut check: impl FnMut(&str, &Sample, &Oracle, f64)) {
 }
 
 fn rows(split: &[Spec]) -> usize {
-    split.iter().map(|(_, _, axes)| axes.len()).sum()
+    split.iter().map(|(_, axes)| axes.len()).sum()
 }
 
 #[test]
@@ -68,12 +69,13 @@ fn the_splits_cover_every_number_of_rows_and_are_levels_of_the_core() {
     counts.dedup();
     assert_eq!(counts, [1, 2, 3, 4, 5, 6, 7]);
     every_split(100, |name, sample, oracle, _| {
-        let lengths: Vec<String> = (0..sample.hierarchy.levels())
-            .map(|level| sample.hierarchy.level_range(level).len().to_string())
+        let hierarchy = &sample.data.hierarchy;
+        let lengths: Vec<String> = (0..hierarchy.levels())
+            .map(|level| hierarchy.level_range(level).len().to_string())
             .collect();
         assert_eq!(lengths.join("+"), name);
         assert_eq!(oracle.levels.len(), lengths.len());
-        assert!(sample.hierarchy.level_range(lengths.len()).is_empty());
+        assert!(hierarchy.level_range(lengths.len()).is_empty());
     });
 }
 
@@ -86,7 +88,7 @@ fn projected_jacobians_inverses_and_inertias_are_the_printed_ones() {
         Worst::new("Lambda_i"),
     ];
     every_split(200, |_, sample, oracle, conditioning| {
-        let (hierarchy, cholesky) = (&sample.hierarchy, &sample.dynamics.cholesky);
+        let (hierarchy, cholesky) = (&sample.data.hierarchy, &sample.data.dynamics.cholesky);
         for (level, expected) in oracle.levels.iter().enumerate() {
             let jbar = Matrix::from_rows(&hierarchy.jbar(level, cholesky));
             let pinv = Matrix::from_rows(&hierarchy.jbar_pinv(level, cholesky)).t();
@@ -117,10 +119,10 @@ fn the_null_space_is_that_of_the_printed_basis() {
         Worst::new("Z M Z^T - 1"),
     ];
     every_split(300, |_, sample, oracle, conditioning| {
-        let (hierarchy, cholesky) = (&sample.hierarchy, &sample.dynamics.cholesky);
+        let (hierarchy, cholesky) = (&sample.data.hierarchy, &sample.data.dynamics.cholesky);
         let projector = Matrix::of::<7, 7>(&hierarchy.null_projector(cholesky));
         let basis = Matrix::from_rows(&hierarchy.null_basis(cholesky));
-        let velocity = hierarchy.null_velocity(cholesky, &sample.state.dq);
+        let velocity = hierarchy.null_velocity(cholesky, &sample.data.joints.dq);
         let velocity = Matrix::column(&velocity);
         assert_eq!(basis.rows(), 7 - hierarchy.count());
         assert_eq!(velocity.rows(), basis.rows());
@@ -144,7 +146,7 @@ fn the_null_space_is_that_of_the_printed_basis() {
 fn the_motion_splits_as_printed_with_the_coupling() {
     let mut worst = [Worst::new("w"), Worst::new("n"), Worst::new("F")];
     every_split(400, |_, sample, oracle, conditioning| {
-        let motion = &sample.motion;
+        let motion = &sample.data.motion;
         let dq = oracle.terms.dq.amax();
         let w = oracle.task_velocity();
         let n = &oracle.basis.z.t() * oracle.null_velocity();
@@ -154,7 +156,7 @@ fn the_motion_splits_as_printed_with_the_coupling() {
         let (jacobian, _) = oracle.terms.stacked(oracle.levels.len());
         let inertia = (&jacobian * &oracle.mass_inverse * &jacobian.t()).inverse();
         let expected = inertia * &jacobian * &oracle.terms.dq;
-        let count = sample.hierarchy.count();
+        let count = sample.data.hierarchy.count();
         let momentum = Matrix::column(&motion.task_momentum[..count]);
         worst[2].add(distance(&momentum, &expected) / conditioning);
         assert!(motion.task_momentum[count..].iter().all(|f| *f == 0.0));
@@ -172,7 +174,7 @@ fn the_torque_is_that_of_the_corrected_printed_law() {
     let mut plain = Worst::new("torque, not divided by the conditioning, below 1e6");
     every_split(500, |_, sample, oracle, conditioning| {
         let expected = oracle.torque(Variant::EXACT);
-        let error = distance(&joint(&sample.demand()), &expected);
+        let error = distance(&joint(&sample.data.demand.0), &expected);
         worst.add(error / conditioning);
         if conditioning < 1e6 {
             plain.add(error);
@@ -183,22 +185,36 @@ fn the_torque_is_that_of_the_corrected_printed_law() {
     plain.within(1e-10);
 }
 
+/// What q_d moves by in one second at this state: the second of two cycles that see
+/// the same motion, by the trapezoidal rule.
+fn posture_rate(split: &str, posture: Posture, joints: &JointState<f64>) -> Matrix {
+    let (_, split) = SPLITS[SPLITS.iter().position(|(name, _)| *name == split).unwrap()];
+    let mut config = configuration(split);
+    config.null_space.posture = posture;
+    let controller = controller(&config);
+    let measurement = Measurement {
+        q: joints.q,
+        dq: joints.dq,
+        interval_s: 1.0,
+    };
+    let input = Input {
+        measurement: &measurement,
+        reference: &Reference::hold(controller.level_count(), JointVector::zeros()),
+    };
+    let mut data = Data::new();
+    controller.evaluate(&input, &mut data);
+    assert_eq!(data.posture.amax(), 0.0, "the first q_d is the reference's");
+    controller.evaluate(&input, &mut data);
+    joint(&data.posture)
+}
+
 /// dq_d of eq (51): with the coupling it is w, as printed it is the sum of
 /// Jbar_i^# dx_i.
 #[test]
 fn both_rates_of_the_integrated_posture_are_as_defined() {
     let mut worst = [Worst::new("coupled"), Worst::new("as printed")];
-    every_split(600, |_, sample, oracle, conditioning| {
-        let rate = |posture| {
-            joint(&posture_rate(
-                posture,
-                &sample.dynamics,
-                &sample.rows,
-                &sample.hierarchy,
-                &sample.motion,
-                &sample.state,
-            ))
-        };
+    every_split(600, |name, sample, oracle, conditioning| {
+        let rate = |posture| posture_rate(name, posture, &sample.data.joints);
         let dq = &oracle.terms.dq;
         let levels = oracle.levels.iter().zip(&oracle.terms.levels);
         let printed = levels.fold(Matrix::zeros(7, 1), |sum, (level, terms)| {
@@ -218,26 +234,28 @@ fn both_rates_of_the_integrated_posture_are_as_defined() {
 /// torque as it is.
 #[test]
 fn the_order_of_the_levels_does_not_change_the_torque_at_full_rank() {
-    let model = lwr();
     let mut worst = Worst::new("torque of the reversed order");
     for (index, (_, split)) in SPLITS.iter().enumerate() {
-        let config = configuration(split);
-        let mut reversed = config.clone();
-        reversed.tasks.reverse();
+        let mut config = configuration(split);
+        let forward = controller(&config);
+        let tasks: Vec<_> = config.tasks.tasks().iter().rev().copied().collect();
+        config.tasks = TaskSet::new(&tasks).expect("the same tasks");
+        let backward = controller(&config);
         let mut random = States::new(700 + index as u64);
         for _ in 0..STATES {
-            let state = random.state();
-            let wish = Wish::random(&model, &config, &state, &mut random);
-            let sample = Sample::new(&model, &config, state, &wish);
-            if sample.hierarchy.deficient().any() {
+            let joints = random.state();
+            let wish = Wish::random(&forward, &joints, &mut random);
+            let sample = Sample::new(&forward, joints, &wish);
+            if sample.data.hierarchy.deficient().any() {
                 continue;
             }
             let mut turned = wish.clone();
-            turned.tasks.reverse();
-            let other = Sample::new(&model, &reversed, state, &turned);
-            assert!(!other.hierarchy.deficient().any());
+            turned.reference.targets_mut().reverse();
+            let other = Sample::new(&backward, joints, &turned);
+            assert!(!other.data.hierarchy.deficient().any());
             let conditioning = Oracle::new(sample.terms()).conditioning();
-            let error = distance(&joint(&other.demand()), &joint(&sample.demand()));
+            let torques = [&other, &sample].map(|sample| joint(&sample.data.demand.0));
+            let error = distance(&torques[0], &torques[1]);
             worst.add(error / conditioning);
         }
     }
@@ -248,15 +266,14 @@ fn the_order_of_the_levels_does_not_change_the_torque_at_full_rank() {
 /// gives the Moore-Penrose hierarchy.
 #[test]
 fn without_weighting_the_inverse_is_that_of_moore_and_penrose() {
-    use controller_core::hierarchy::Hierarchy;
-    use controller_core::linalg::Cholesky;
     let mut worst = Worst::new("J^#");
     every_split(800, |name, sample, oracle, conditioning| {
         if name != "3" {
             return;
         }
         let identity = Cholesky::identity();
-        let hierarchy = Hierarchy::new(&sample.rows, &identity);
+        let mut hierarchy = Hierarchy::new();
+        hierarchy.update(&sample.data.rows, &identity);
         let pinv = Matrix::from_rows(&hierarchy.jbar_pinv(0, &identity)).t();
         let j = &oracle.terms.levels[0].jacobian;
         let expected = j.t() * (j * &j.t()).inverse();

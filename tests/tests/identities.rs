@@ -1,9 +1,8 @@
 //! The core's kinematics and dynamics against identities that any correct
 //! model obeys, and against the independent plant.
 
+use controller_core::arm::{LWR_IV, Link};
 use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::kinematics::LinkPoint;
-use controller_core::model::LWR_IV;
 use hil_sim::plant::PlantModel;
 use hil_sim::scenario::{BUILT_IN, Scenario};
 use stratum_tests::random::States;
@@ -148,26 +147,23 @@ fn points_jacobians_and_their_rates_agree_with_the_plant_and_with_differences() 
     let mut states = States::new(6);
     for n in 0..STATES {
         let state = states.state();
-        let point = LinkPoint {
-            link: 1 + n % 7,
-            offset: states.vector().fixed_rows::<3>(0) * 0.3,
-        };
+        let (link, offset) = (Link::ALL[n % 7], states.vector().fixed_rows::<3>(0) * 0.3);
         let (kinematics, _) = evaluate(&model, &state);
-        let motion = kinematics.point(&point);
-        let (x, dx) = plant.point(&state, point.link, &point.offset);
+        let motion = kinematics.point(link, &offset);
+        let (x, dx) = plant.point(&state, link.number(), &offset);
         assert!(relative(&motion.x, &x, 1.0) < 1e-13);
         assert!(relative(&motion.dx, &dx, 1.0) < 1e-13);
 
-        let rows = kinematics.point_jacobian(point.link, &motion);
+        let rows = kinematics.point_jacobian(link, &motion);
         let jacobian_at = |step: f64| {
             let (k, _) = evaluate(&model, &moved(&state, &state.dq, step));
-            k.point_jacobian(point.link, &k.point(&point)).jacobian
+            k.point_jacobian(link, &k.point(link, &offset)).jacobian
         };
         let (ahead, behind) = (jacobian_at(STEP), jacobian_at(-STEP));
         for axis in 0..3 {
             let mut force = nalgebra::Vector3::zeros();
             force[axis] = 1.0;
-            let torque = plant.point_torque(&state.q, point.link, &point.offset, &force);
+            let torque = plant.point_torque(&state.q, link.number(), &offset, &force);
             assert!(relative(&rows.jacobian[axis], &torque, 1.0) < 1e-13);
             assert!((rows.jacobian[axis].dot(&state.dq) - motion.dx[axis]).abs() < 1e-12);
             let rate = (ahead[axis] - behind[axis]) / (2.0 * STEP);
@@ -205,13 +201,14 @@ fn contacts_act_on_the_point_that_they_name() {
             for _ in 0..20 {
                 let state = states.state();
                 let (kinematics, _) = evaluate(&model, &state);
-                let motion = kinematics.point(&point);
+                let motion = kinematics.point(point.link, &point.offset.into());
                 let rows = kinematics.point_jacobian(point.link, &motion).jacobian;
                 let force = Vector3::from(push.force_n);
                 let expected = rows[0] * force.x + rows[1] * force.y + rows[2] * force.z;
                 let (torque, _) = contacts.joint_torque(middle, &plant, &state);
                 assert!((torque - expected).amax() < 1e-12, "{name}: {torque}");
-                assert!(torque.iter().skip(point.link).all(|&beyond| beyond == 0.0));
+                let mut beyond = torque.iter().skip(point.link.number());
+                assert!(beyond.all(|&torque| torque == 0.0));
             }
             pushes += 1;
         }

@@ -2,22 +2,22 @@
 //! the gain and the interval, and inside the controller it is fed with what
 //! really happened.
 
-use controller_core::controller::{Controller, ControllerState};
+use controller_core::arm::LWR_IV;
+use controller_core::cycle::observer::{Observer, external_torque};
 use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::law::{NullDamping, TorqueDemand};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::observer::{Observer, external_torque};
-use controller_core::task::TaskReference;
+use controller_core::law::null_space::NullDamping;
+use controller_core::{Controller, Measurement, Reference, State, Target};
 use hil_sim::plant::{Plant, PlantKind};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use std::cell::RefCell;
-use stratum_tests::config::two_level;
+use stratum_tests::config::{FLANGE, two_level};
 use stratum_tests::golden::Worst;
-use stratum_tests::oracle::closed_loop::{TWO_LEVEL_START, circle, posture};
+use stratum_tests::oracle::closed_loop::{
+    TWO_LEVEL_START, circle, no_contact, posture, true_point,
+};
 use stratum_tests::random::States;
-use stratum_tests::{evaluate, lwr};
+use stratum_tests::{controller, evaluate, lwr};
 
 /// Eq (30): with a constant disturbance F and a known input that jumps at every
 /// instant, r = F (1 - e^(-K_I t)) at the instants, for any gains and any
@@ -44,20 +44,20 @@ fn the_step_response_is_the_exponential_at_every_instant_for_any_gain() {
         let force = random.vector() * 30.0;
         let mut momentum = random.vector() * 3.0;
         let mut observer = Observer::new();
-        let first = observer.update(&gain, 0.002, &momentum);
-        prop_assert_eq!(first, JointVector::zeros());
+        observer.update(&gain, 0.002, &momentum);
+        prop_assert_eq!(observer.residual, JointVector::zeros());
         let (mut time, mut largest, mut shortest) = (0.0, 0.0f64, 1.0f64);
         for interval in intervals.into_iter().map(libm::exp10) {
             let input = random.vector() * 50.0;
             observer.input = input;
             momentum += (input + force) * interval;
             time += interval;
-            let residual = observer.update(&gain, interval, &momentum);
+            observer.update(&gain, interval, &momentum);
             (largest, shortest) = (largest.max(momentum.amax()), shortest.min(interval));
             for i in 0..7 {
                 let expected = -force[i] * libm::expm1(-gain[i] * time);
                 let rounding = f64::EPSILON * (largest / shortest + 80.0);
-                (worst.borrow_mut()).add((residual[i] - expected).abs() / rounding);
+                (worst.borrow_mut()).add((observer.residual[i] - expected).abs() / rounding);
             }
         }
         Ok(())
@@ -86,8 +86,8 @@ fn a_changing_disturbance_is_followed_to_second_order() {
         for k in 0..=(1.0 / interval) as u32 {
             let t = f64::from(k) * interval;
             let momentum = JointVector::repeat((1.0 - libm::cos(OMEGA * t)) / OMEGA);
-            let residual = observer.update(&JointVector::repeat(GAIN), interval, &momentum);
-            worst = worst.max((residual[3] - solution(t)).abs());
+            observer.update(&JointVector::repeat(GAIN), interval, &momentum);
+            worst = worst.max((observer.residual[3] - solution(t)).abs());
         }
         worst
     };
@@ -105,16 +105,17 @@ fn it_is_stable_where_the_euler_form_is_not() {
     let (interval, gain, force) = (0.002, 1500.0, 7.0f64);
     let mut observer = Observer::new();
     let mut euler = 0.0f64;
-    let (mut residual, mut momentum) = (0.0f64, 0.5);
+    let mut momentum = 0.5;
     for _ in 0..30 {
-        residual = observer.update(
+        observer.update(
             &JointVector::repeat(gain),
             interval,
             &JointVector::repeat(momentum),
-        )[0];
+        );
         euler += gain * interval * (force - euler);
         momentum += force * interval;
     }
+    let residual = observer.residual[0];
     assert!((residual - force).abs() < 1e-9, "{residual}");
     assert!((euler - force).abs() > 1e6, "{euler}");
     // The sign is flipped in one place, eq (31).
@@ -135,22 +136,22 @@ fn starting_in_motion_gives_no_jump() {
     let push = JointVector::from([10.0, -5.0, 3.0, 5.0, 0.2, 0.1, 0.001])
         + evaluate(&model, plant.state()).1.gravity;
     for _ in 0..100 {
-        plant.advance(0.0, &push, |_, _, _| JointVector::zeros());
+        plant.advance(0.0, &push, no_contact);
     }
     let momentum = evaluate(&model, plant.state()).1.momentum;
     assert!(momentum.amax() > 1.0, "a moving arm: {momentum}");
-    let controller = Controller::new(&lwr(), &two_level()).expect("a valid configuration");
-    let mut state = ControllerState::new();
+    let controller = controller(&two_level());
+    let mut state = State::new();
     let mut largest = 0.0f64;
     for cycle in 0..50 {
-        let reference = towards(TaskReference::rest(flange(&plant)), plant.state().q);
+        let reference = towards(Target::position(flange(&plant)), plant.state().q);
         let step = controller.step(&mut state, &measured(&plant, 0.002), &reference);
         assert!(step.status.fault.is_none(), "{:?}", step.status);
         if cycle == 0 {
             assert_eq!(step.residual, JointVector::zeros());
         }
         largest = largest.max(step.residual.amax());
-        plant.advance(0.0, &step.torque, |_, _, _| JointVector::zeros());
+        plant.advance(0.0, &step.torque, no_contact);
     }
     println!(
         "largest residual {largest:.3} Nm, K_I p = {:.0} Nm/s",
@@ -169,28 +170,18 @@ fn saturated_torque_is_not_taken_for_an_external_one() {
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
     let mut arm = LWR_IV;
     arm.links[1].torque_limit = 0.9 * evaluate(&lwr(), plant.state()).1.gravity[1].abs();
-    let model = ArmModel::new(&arm).expect("a weak arm");
-    let controller = Controller::new(&model, &two_level()).expect("a valid configuration");
-    let mut state = ControllerState::new();
+    let controller = Controller::new(&arm, &two_level()).expect("a weak arm");
+    let mut state = State::new();
     let x = flange(&plant);
     let (mut largest, mut excess) = (0.0f64, 0.0f64);
     for _ in 0..100 {
-        let mut demand = JointVector::zeros();
-        let step = controller.step_with(
-            &mut state,
-            &measured(&plant, 0.002),
-            &towards(TaskReference::rest(x), start),
-            |cycle| {
-                let torque = TorqueDemand::hierarchical(cycle);
-                demand = torque.0;
-                torque
-            },
-        );
+        let reference = towards(Target::position(x), start);
+        let step = controller.step(&mut state, &measured(&plant, 0.002), &reference);
         assert!(step.status.fault.is_none(), "{:?}", step.status);
         assert!(step.status.saturated.contains(1));
-        excess = excess.max((demand - step.torque).amax());
+        excess = excess.max((state.data().demand.0 - step.torque).amax());
         largest = largest.max(step.residual.amax());
-        plant.advance(0.0, &step.torque, |_, _, _| JointVector::zeros());
+        plant.advance(0.0, &step.torque, no_contact);
     }
     println!("cut by up to {excess:.0} Nm, residual {largest:.4} Nm");
     assert!(excess > 5.0, "{excess}");
@@ -199,8 +190,7 @@ fn saturated_torque_is_not_taken_for_an_external_one() {
 }
 
 fn flange(plant: &Plant) -> Vector3<f64> {
-    let offset = [0.0, 0.0, 0.078].into();
-    plant.model().point(plant.state(), 7, &offset).0
+    true_point(plant, FLANGE)
 }
 
 fn measured(plant: &Plant, interval_s: f64) -> Measurement<f64> {
@@ -208,11 +198,8 @@ fn measured(plant: &Plant, interval_s: f64) -> Measurement<f64> {
     Measurement { q, dq, interval_s }
 }
 
-fn towards(task: TaskReference<f64>, posture: JointVector<f64>) -> Reference<f64> {
-    Reference {
-        tasks: [task].into_iter().collect(),
-        posture,
-    }
+fn towards(target: Target<f64>, posture: JointVector<f64>) -> Reference<f64> {
+    Reference::new([target], posture)
 }
 
 /// Runs the fast circle with plant steps of 0.5 ms and controller intervals of 2
@@ -222,8 +209,8 @@ fn with_varying_intervals(push: f64, claimed: impl Fn(f64) -> f64) -> f64 {
     const STEP: f64 = 0.0005;
     let start = posture(TWO_LEVEL_START);
     let motion = circle(0.1, 3.0);
-    let controller = Controller::new(&lwr(), &two_level()).expect("a valid configuration");
-    let mut state = ControllerState::new();
+    let controller = controller(&two_level());
+    let mut state = State::new();
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, STEP, 1);
     let origin = flange(&plant);
     let mut random = States::new(8);
@@ -276,12 +263,12 @@ fn the_interval_that_counts_is_the_measured_one() {
 fn dead_time_is_known_to_the_observer() {
     let largest = |dead_cycles: u8| {
         let start = posture(TWO_LEVEL_START);
-        let mut config = two_level::<f64>();
+        let mut config = two_level();
         config.null_space.damping = NullDamping::Inertia(10.0);
         config.dead_cycles = dead_cycles;
         let motion = circle(0.1, 2.0);
-        let controller = Controller::new(&lwr(), &config).expect("a valid configuration");
-        let mut state = ControllerState::new();
+        let controller = controller(&config);
+        let mut state = State::new();
         let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, start, 0.002, 1);
         let origin = flange(&plant);
         let gravity = evaluate(&lwr(), plant.state()).1.gravity;
@@ -293,7 +280,7 @@ fn dead_time_is_known_to_the_observer() {
             let step = controller.step(&mut state, &measured(&plant, 0.002), &reference);
             assert!(step.status.is_clear(), "{:?}", step.status);
             largest = largest.max(step.residual.amax());
-            plant.advance(t, &wire[1], |_, _, _| JointVector::zeros());
+            plant.advance(t, &wire[1], no_contact);
             wire = [step.torque, wire[0]];
         }
         largest

@@ -1,8 +1,8 @@
 //! The plant against golden data of an independent library, against closed
 //! forms, and against what a mechanical system must do.
 
+use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
-use controller_core::model::{ArmParameters, LWR_IV};
 use hil_sim::plant::{Plant, PlantKind, PlantModel, Rng, mismatched, noise};
 use std::f64::consts::{PI, TAU};
 

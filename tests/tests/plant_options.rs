@@ -3,10 +3,9 @@
 
 use std::time::Instant;
 
-use controller_core::controller::{Controller, ControllerState};
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector};
-use controller_core::measurement::Measurement;
-use controller_core::model::{ArmModel, LWR_IV};
+use controller_core::{Controller, Measurement, State, Target};
 use hil_sim::plant::elastic::JOINT_STIFFNESS;
 use hil_sim::plant::friction::COULOMB;
 use hil_sim::plant::{DEAD_CYCLES_MAX, Plant, PlantKind, PlantModel, PlantOptions};
@@ -228,13 +227,13 @@ struct Figures {
 fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
     let clock = Instant::now();
     let scenario = Scenario::find("two-level").expect("built in");
-    let model = ArmModel::new(scenario.arm()).expect("built in");
     let config = scenario.controller_config(options.dead_cycles as u8);
-    let controller = Controller::new(&model, &config).expect("a valid configuration");
+    let config = config.expect("levels that make a set");
+    let controller = Controller::new(scenario.arm(), &config).expect("a valid configuration");
     let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
     let (origins, mut contacts) = (scenario.origins_at(&scenario.start()), scenario.contacts());
     let (arm, start) = (scenario.arm(), scenario.start());
-    let mut state = ControllerState::new();
+    let mut state = State::new();
     let mut plant = Plant::with_options(kind, arm, start, cycle_s, seed, options);
     let point = scenario.levels[0].point.resolve();
     let (mut squares, mut max_mm) = (0.0, 0.0f64);
@@ -250,8 +249,12 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
         let reference = scenario.reference(&origins, &scenario.start(), t_s);
         let step = controller.step(&mut state, &measurement, &reference);
         assert_eq!(step.status.fault, None, "{options:?} at {t_s} s");
-        let (x, _) = plant.model().point(&truth, point.link, &point.offset);
-        let error_mm = (reference.tasks[0].x - x).norm() * 1e3;
+        let offset = point.offset.into();
+        let (x, _) = plant.model().point(&truth, point.link.number(), &offset);
+        let Target::Position { x: desired, .. } = reference.targets()[0] else {
+            panic!("a position level");
+        };
+        let error_mm = (desired - x).norm() * 1e3;
         squares += error_mm * error_mm;
         max_mm = max_mm.max(error_mm);
         contacts.take_hold(t_s, plant.model(), &truth);

@@ -1,16 +1,12 @@
 //! Single against double precision, from the same source.
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState, Step};
 use controller_core::joint::{JointState, JointVector};
-use controller_core::law::TorqueDemand;
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::real::Real;
-use controller_core::trajectory::Trajectory;
-use stratum_tests::config::two_level;
+use controller_core::task::trajectory::Trajectory;
+use controller_core::{Controller, ControllerConfig, Measurement, State, Step};
+use stratum_tests::config::{three_level, two_level};
+use stratum_tests::controller;
 use stratum_tests::golden::Worst;
-use stratum_tests::lwr;
 use stratum_tests::oracle::Oracle;
 use stratum_tests::oracle::closed_loop::{
     CASE_START, ClosedLoop, TWO_LEVEL_START, cast, circle, posture, rms_mm,
@@ -20,30 +16,20 @@ use stratum_tests::random::States;
 
 /// Demands, residual and status of two cycles, the second 2 ms later.
 fn two_cycles<T: Real>(
-    config: &ControllerConfig<T>,
+    controller: &Controller<T>,
     states: &[JointState<f64>; 2],
     wish: &Wish,
 ) -> ([JointVector<f64>; 2], Step<T>) {
-    let model = ArmModel::<T>::new(&LWR_IV).expect("the built-in arm is valid");
-    let controller = Controller::new(&model, config).expect("a valid configuration");
-    let mut memory = ControllerState::new();
-    let reference = Reference {
-        tasks: wish.tasks.iter().map(cast).collect(),
-        posture: wish.posture.map(T::from_f64),
-    };
-    let mut demand = JointVector::zeros();
+    let mut memory = State::new();
+    let reference = cast(&wish.reference);
     let [first, second] = states.map(|state| {
         let measurement = Measurement {
             q: state.q.map(T::from_f64),
             dq: state.dq.map(T::from_f64),
             interval_s: T::from_f64(0.002),
         };
-        let step = controller.step_with(&mut memory, &measurement, &reference, |cycle| {
-            let torque = TorqueDemand::hierarchical(cycle);
-            demand = torque.0.map(T::to_f64);
-            torque
-        });
-        (demand, step)
+        let step = controller.step(&mut memory, &measurement, &reference);
+        (memory.data().demand.0.map(T::to_f64), step)
     });
     ([first.0, second.0], second.1)
 }
@@ -54,18 +40,18 @@ fn two_cycles<T: Real>(
 /// u, through the filter.
 #[test]
 fn one_cycle_in_single_precision_differs_by_its_rounding() {
-    let model = lwr();
     let mut torque = Worst::new("demand / (largest, conditioning)");
     let mut plain = Worst::new("demand / largest, conditioning below 1e5");
     let mut residual = Worst::new("residual / (p / h + u)");
     let (mut skipped, mut checked) = (0, 0);
     for (index, (_, split)) in SPLITS.iter().enumerate() {
-        let (single, double) = (configuration::<f32>(split), configuration::<f64>(split));
+        let config = configuration(split);
+        let (single, double) = (controller::<f32>(&config), controller::<f64>(&config));
         let mut random = States::new(900 + index as u64);
         for _ in 0..200 {
             let state = random.state();
-            let wish = Wish::random(&model, &double, &state, &mut random);
-            let sample = Sample::new(&model, &double, state, &wish);
+            let wish = Wish::random(&double, &state, &mut random);
+            let sample = Sample::new(&double, state, &wish);
             let conditioning = Oracle::new(sample.terms()).conditioning();
             // Beyond it f32 has no digits left of any row.
             if conditioning > 1e8 {
@@ -87,8 +73,8 @@ fn one_cycle_in_single_precision_differs_by_its_rounding() {
                     plain.add(error);
                 }
             }
-            let momentum = sample.dynamics.momentum.amax() / 0.002;
-            let size = momentum + step.torque.amax() + sample.dynamics.coriolis.amax();
+            let momentum = sample.data.dynamics.momentum.amax() / 0.002;
+            let size = momentum + step.torque.amax() + sample.data.dynamics.coriolis.amax();
             let difference = step_single.residual.map(f64::from) - step.residual;
             residual.add(difference.amax() / size);
         }
@@ -102,7 +88,7 @@ fn one_cycle_in_single_precision_differs_by_its_rounding() {
 /// rms and largest error \[mm\] per level and the largest residual \[Nm\], from 0
 /// to 10 s, free.
 fn free_run<T: Real>(
-    config: &ControllerConfig<T>,
+    config: &ControllerConfig,
     start: [f64; 7],
     motions: &[Trajectory<f64>],
 ) -> (Vec<[f64; 2]>, f64) {
@@ -129,8 +115,8 @@ fn free_run<T: Real>(
 #[test]
 fn the_two_level_circle_is_kept_in_single_precision() {
     let motions = [circle(0.1, 6.0)];
-    let (double, quiet) = free_run(&two_level::<f64>(), TWO_LEVEL_START, &motions);
-    let (single, noisy) = free_run(&two_level::<f32>(), TWO_LEVEL_START, &motions);
+    let (double, quiet) = free_run::<f64>(&two_level(), TWO_LEVEL_START, &motions);
+    let (single, noisy) = free_run::<f32>(&two_level(), TWO_LEVEL_START, &motions);
     println!(
         "rms, max [mm]: f64 {double:.5?}, f32 {single:.5?}; residual {quiet:.1e}, {noisy:.1e} Nm"
     );
@@ -144,10 +130,8 @@ fn the_two_level_circle_is_kept_in_single_precision() {
 #[test]
 fn three_levels_are_kept_in_single_precision() {
     let motions = [circle(0.04, 5.0), Trajectory::Hold];
-    let three = stratum_tests::config::three_level::<f64>();
-    let (double, _) = free_run(&three, CASE_START, &motions);
-    let three = stratum_tests::config::three_level::<f32>();
-    let (single, _) = free_run(&three, CASE_START, &motions);
+    let (double, _) = free_run::<f64>(&three_level(), CASE_START, &motions);
+    let (single, _) = free_run::<f32>(&three_level(), CASE_START, &motions);
     println!("rms, max [mm]: f64 {double:.5?}, f32 {single:.5?}");
     for level in 0..2 {
         assert!(double[level][0] < 0.001);

@@ -6,14 +6,18 @@ mod any_input;
 
 use std::cell::{Cell, RefCell};
 
+use controller_core::Target;
+use controller_core::arm::LWR_IV;
+use controller_core::cycle::Data;
 use controller_core::joint::{DOF, JointState, JointVector};
-use controller_core::model::{ArmModel, LWR_IV};
-use controller_core::task::TaskKind;
+use controller_core::law::control::{Control, TorqueDemand};
+use controller_core::task::Tracked;
+use controller_core::{Controller, ControllerConfig};
 use hil_sim::plant::PlantModel;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
+use stratum_tests::controller;
 use stratum_tests::golden::Worst;
-use stratum_tests::lwr;
 use stratum_tests::oracle::matrix::Matrix;
 use stratum_tests::oracle::sample::{SPLITS, Sample, Wish, configuration};
 use stratum_tests::oracle::{Oracle, Variant};
@@ -81,11 +85,28 @@ fn regular() -> impl Strategy<Value = Case> {
     states(prop::sample::select(vec![0u8, 1, 2, 4]), 1.0..2.0)
 }
 
-fn sample((split, state, seed): &Case, model: &ArmModel<f64>, residual: f64) -> Sample {
-    let config = configuration(SPLITS[*split].1);
-    let mut wish = Wish::random(model, &config, state, &mut States::new(*seed));
-    wish.residual *= residual;
-    Sample::new(model, &config, *state, &wish)
+/// The configuration of every split and its controller.
+struct Splits(Vec<(ControllerConfig, Controller<f64>)>);
+
+impl Splits {
+    fn new() -> Self {
+        let configs = SPLITS.map(|(_, split)| configuration(split));
+        Self(
+            configs
+                .map(|config| (config.clone(), controller(&config)))
+                .into(),
+        )
+    }
+
+    fn wish(&self, (split, joints, seed): &Case) -> Wish {
+        Wish::random(&self.0[*split].1, joints, &mut States::new(*seed))
+    }
+
+    fn sample(&self, case: &Case, residual: f64) -> Sample {
+        let mut wish = self.wish(case);
+        wish.residual *= residual;
+        Sample::new(&self.0[case.0].1, case.1, &wish)
+    }
 }
 
 /// Eq (22), eq (23), eq (24), eq (25): which products of Jbar and Jbar^# vanish, the
@@ -94,7 +115,7 @@ fn sample((split, state, seed): &Case, model: &ArmModel<f64>, residual: f64) -> 
 /// way back: rounding is left.
 #[test]
 fn levels_and_null_space_are_orthogonal_however_near_a_singularity() {
-    let model = lwr();
+    let splits = Splits::new();
     let worst = [
         "Jbar_i Jbar_i^# - 1",
         "Jbar_i Jbar_j^#",
@@ -107,12 +128,12 @@ fn levels_and_null_space_are_orthogonal_however_near_a_singularity() {
     .map(|name| RefCell::new(Worst::new(name)));
     let deficient = Cell::new(0);
     for_all(near_singular(), |case| {
-        let Sample {
+        let Data {
             hierarchy,
             dynamics,
             rows,
             ..
-        } = sample(&case, &model, 1.0);
+        } = splits.sample(&case, 1.0).data;
         let cholesky = &dynamics.cholesky;
         let mass = Matrix::of(&dynamics.mass_matrix);
         let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count()]);
@@ -173,17 +194,17 @@ fn levels_and_null_space_are_orthogonal_however_near_a_singularity() {
 /// the metric of M, and no level sees what N leaves.
 #[test]
 fn the_projectors_project() {
-    let model = lwr();
+    let splits = Splits::new();
     let worst =
         ["N N - N", "M N - (M N)^T", "J N", "w of n"].map(|name| RefCell::new(Worst::new(name)));
     for_all(near_singular(), |case| {
-        let Sample {
+        let Data {
             hierarchy,
             dynamics,
             rows,
             motion,
             ..
-        } = sample(&case, &model, 1.0);
+        } = splits.sample(&case, 1.0).data;
         let n = Matrix::of::<7, 7>(&hierarchy.null_projector(&dynamics.cholesky));
         let mass = Matrix::of(&dynamics.mass_matrix);
         let jacobian = Matrix::from_rows(&rows.jacobian[..rows.count()]);
@@ -209,12 +230,12 @@ fn the_projectors_project() {
 /// The error is divided by the conditioning of what the formulas invert.
 #[test]
 fn the_torque_does_not_depend_on_the_basis() {
-    let model = lwr();
+    let splits = Splits::new();
     let worst = RefCell::new(Worst::new("torque with another basis"));
     let skipped = Cell::new(0u32);
     for_all(regular(), |case| {
-        let sample = sample(&case, &model, 1.0);
-        if sample.hierarchy.deficient().any() {
+        let sample = splits.sample(&case, 1.0);
+        if sample.data.hierarchy.deficient().any() {
             skipped.set(skipped.get() + 1);
             return;
         }
@@ -229,7 +250,7 @@ fn the_torque_does_not_depend_on_the_basis() {
         let rate = Matrix::from_fn(size, size, |i, j| 3.0 * numbers[size * (size + i) + j]);
         let basis = oracle.basis.transformed(&turn, &rate);
         let other = Oracle::with_basis(oracle.terms.clone(), basis);
-        let torque = Matrix::of(&sample.demand());
+        let torque = Matrix::of(&sample.data.demand.0);
         let error = (other.torque(Variant::EXACT) - &torque).amax();
         (worst.borrow_mut()).add(error / torque.amax() / oracle.conditioning());
     });
@@ -241,14 +262,13 @@ fn the_torque_does_not_depend_on_the_basis() {
 /// null-space torque through any rotated basis is that of the core.
 #[test]
 fn the_null_space_torque_is_that_of_any_rotated_basis() {
-    let model = lwr();
+    let splits = Splits::new();
     let worst = RefCell::new(Worst::new("N^T f"));
     for_all(near_singular(), |case| {
-        let mut sample = sample(&case, &model, 0.0);
-        sample.command.task_acceleration.fill(0.0);
-        let dynamics = &sample.dynamics;
+        let data = splits.sample(&case, 0.0).data;
+        let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
         let bias = Matrix::of(&(dynamics.coriolis + dynamics.gravity));
-        let z = Matrix::from_rows(&sample.hierarchy.null_basis(&dynamics.cholesky));
+        let z = Matrix::from_rows(&hierarchy.null_basis(&dynamics.cholesky));
         let mut random = States::new(case.2 ^ 2);
         let numbers: Vec<f64> = (0..z.rows() * z.rows()).map(|_| random.signed()).collect();
         let turn = Matrix::from_fn(z.rows(), z.rows(), |i, j| {
@@ -256,10 +276,16 @@ fn the_null_space_torque_is_that_of_any_rotated_basis() {
         });
         let z = turn * &z;
         let mass = Matrix::of(&dynamics.mass_matrix);
-        let force = Matrix::of(&sample.command.null_force);
+        let force = Matrix::of(&data.control.null_force);
         let coordinates = (&z * &mass * &z.t()).inverse() * (&z * &force);
         let expected = &mass * &z.t() * coordinates + &bias;
-        let error = (Matrix::of(&sample.demand()) - expected).amax();
+        let resting = Control {
+            task_acceleration: JointVector::zeros(),
+            ..data.control
+        };
+        let residual = data.residual();
+        let demand = TorqueDemand::compensating(dynamics, hierarchy, &resting, residual).0;
+        let error = (Matrix::of(&demand) - expected).amax();
         // L and L^-1 magnify by 126.
         (worst.borrow_mut()).add(error / (force.amax() + bias.amax()) / 126.0);
     });
@@ -267,24 +293,29 @@ fn the_null_space_torque_is_that_of_any_rotated_basis() {
 }
 
 /// Eq (8), eq (12), eq (26): the plant, an independent algorithm, accelerates every
-/// resolvable row exactly as wanted, whatever the rows above do, near
+/// resolvable row exactly as commanded, whatever the rows above do, near
 /// singularities too. Errors are relative to the largest joint acceleration:
 /// rounding of sums of seven, magnified by ||L|| ||L^-1|| = 126.
 #[test]
-fn the_plant_accelerates_every_resolvable_row_as_wanted() {
-    let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
-    let worst = RefCell::new(Worst::new("J ddq + (dJ/dt) dq - wanted"));
+fn the_plant_accelerates_every_resolvable_row_as_commanded() {
+    let (splits, plant) = (Splits::new(), PlantModel::new(&LWR_IV));
+    let worst = RefCell::new(Worst::new("J ddq + (dJ/dt) dq - commanded"));
     let rows_checked = Cell::new(0);
     for_all(near_singular(), |case| {
-        let sample = sample(&case, &model, 0.0);
-        let JointState { q, dq } = &sample.state;
-        let ddq = plant.forward_dynamics(q, dq, &sample.demand(), &JointVector::zeros());
-        for row in 0..sample.rows.count() {
-            if sample.hierarchy.deficient().contains(row) {
+        let Data {
+            joints: JointState { q, dq },
+            rows,
+            hierarchy,
+            demand,
+            ..
+        } = splits.sample(&case, 0.0).data;
+        let ddq = plant.forward_dynamics(&q, &dq, &demand.0, &JointVector::zeros());
+        for row in 0..rows.count() {
+            if hierarchy.deficient().contains(row) {
                 continue;
             }
-            let achieved = sample.rows.jacobian[row].dot(&ddq) + sample.rows.bias[row];
-            let error = (achieved - sample.rows.wanted[row]).abs();
+            let achieved = rows.jacobian[row].dot(&ddq) + rows.bias[row];
+            let error = (achieved - rows.commanded[row]).abs();
             (worst.borrow_mut()).add(error / (ddq.amax() + 1.0));
             rows_checked.set(rows_checked.get() + 1);
         }
@@ -301,42 +332,43 @@ fn the_plant_accelerates_every_resolvable_row_as_wanted() {
 #[test]
 fn the_plants_points_accelerate_as_the_gains_say() {
     const STEP: f64 = 1e-6;
-    let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
+    let (splits, plant) = (Splits::new(), PlantModel::new(&LWR_IV));
     let worst = RefCell::new(Worst::new("(ddx - (12)) / expected error"));
     for_all(regular(), |case| {
-        let config = configuration::<f64>(SPLITS[case.0].1);
-        let wish = Wish::random(&model, &config, &case.1, &mut States::new(case.2));
-        let sample = sample(&case, &model, 0.0);
-        if sample.hierarchy.deficient().any() {
+        let (config, wish) = (&splits.0[case.0].0, splits.wish(&case));
+        let sample = splits.sample(&case, 0.0);
+        if sample.data.hierarchy.deficient().any() {
             return;
         }
         let JointState { q, dq } = case.1;
-        let ddq = plant.forward_dynamics(&q, &dq, &sample.demand(), &JointVector::zeros());
-        for (task, reference) in config.tasks.iter().zip(&wish.tasks) {
-            if task.kind != TaskKind::Position {
+        let ddq = plant.forward_dynamics(&q, &dq, &sample.data.demand.0, &JointVector::zeros());
+        for (task, target) in config.tasks.tasks().iter().zip(wish.reference.targets()) {
+            let (Tracked::Position(point), Target::Position { x, dx, ddx }) =
+                (task.tracked, target)
+            else {
                 continue;
-            }
+            };
             let at = |t: f64| {
                 let state = JointState {
                     q: q + dq * t + ddq * (t * t / 2.0),
                     dq: dq + ddq * t,
                 };
-                plant.point(&state, task.point.link, &task.point.offset)
+                plant.point(&state, point.link.number(), &point.offset.into())
             };
-            let (x, dx) = at(0.0);
-            let ddx = (at(STEP).1 - at(-STEP).1) / (2.0 * STEP);
-            for i in (0..3).filter(|&i| task.axes.xyz[i]) {
-                let controlled = (0..3).filter(|&j| task.axes.xyz[j]);
-                let wanted = reference.ddx[i]
+            let now = at(0.0);
+            let achieved = (at(STEP).1 - at(-STEP).1) / (2.0 * STEP);
+            for i in (0..3).filter(|&i| task.axes.contains(i)) {
+                let controlled = (0..3).filter(|&j| task.axes.contains(j));
+                let commanded = ddx[i]
                     + controlled
                         .map(|j| {
-                            task.damping[(i, j)] * (reference.dx[j] - dx[j])
-                                + task.stiffness[(i, j)] * (reference.x[j] - x[j])
+                            task.gains.damping[i][j] * (dx[j] - now.1[j])
+                                + task.gains.stiffness[i][j] * (x[j] - now.0[j])
                         })
                         .sum::<f64>();
                 let fourth = (ddq.amax() + dq.amax() * dq.amax()).powi(2);
                 let expected = 1e-8 + STEP * STEP * fourth;
-                (worst.borrow_mut()).add((ddx[i] - wanted).abs() / expected);
+                (worst.borrow_mut()).add((achieved[i] - commanded).abs() / expected);
             }
         }
     });
@@ -348,18 +380,18 @@ fn the_plants_points_accelerate_as_the_gains_say() {
 /// Lambda dv/dt + mu v + Z D Z^T v = Z (K_q q~ - tau_ext).
 #[test]
 fn the_plants_null_space_is_the_wanted_spring_and_damper() {
-    let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
+    let (splits, plant) = (Splits::new(), PlantModel::new(&LWR_IV));
     let worst = RefCell::new(Worst::new("null-space equation"));
     let skipped = Cell::new(0u32);
     for_all(regular(), |case| {
-        let sample = sample(&case, &model, 1.0);
-        if sample.hierarchy.deficient().any() {
+        let sample = splits.sample(&case, 1.0);
+        if sample.data.hierarchy.deficient().any() {
             skipped.set(skipped.get() + 1);
             return;
         }
-        let JointState { q, dq } = &sample.state;
+        let JointState { q, dq } = &sample.data.joints;
         let tau_ext = States::new(case.2 ^ 3).vector() * 10.0;
-        let torque = sample.demand();
+        let torque = sample.data.demand.0;
         let ddq = plant.forward_dynamics(q, dq, &(torque - tau_ext), &JointVector::zeros());
         let oracle = Oracle::new(sample.terms());
         let (null, terms) = (&oracle.null, &oracle.terms);

@@ -1,14 +1,14 @@
 //! A controller of either precision around the ideal plant.
 
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState, Step};
+use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::law::{Cycle, TorqueDemand};
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, ArmParameters, LWR_IV};
 use controller_core::real::Real;
-use controller_core::task::{TaskKind, TaskReference};
-use controller_core::trajectory::Trajectory;
+use controller_core::task::Tracked;
+use controller_core::task::trajectory::{Plane, Trajectory};
+use controller_core::{
+    Controller, ControllerConfig, LinkPoint, Measurement, Reference, State, Step, Target, Task,
+};
 use hil_sim::plant::{Plant, PlantKind, PlantModel};
 
 /// The posture \[deg\] from which the two-level circle starts.
@@ -27,11 +27,17 @@ pub fn posture(degrees: [f64; 7]) -> JointVector<f64> {
 #[must_use]
 pub fn circle(radius_m: f64, period_s: f64) -> Trajectory<f64> {
     Trajectory::Turn {
-        plane: controller_core::trajectory::Plane::Yz,
+        plane: Plane::Yz,
         radius_m,
         period_s,
         growth_s: 2.0,
     }
+}
+
+/// No force from outside, as in [`Plant::advance`].
+#[must_use]
+pub fn no_contact(_: f64, _: &PlantModel, _: &JointState<f64>) -> JointVector<f64> {
+    JointVector::zeros()
 }
 
 /// Controller, plant and references.
@@ -40,15 +46,14 @@ pub struct ClosedLoop<T: Real> {
     /// Of the core.
     pub controller: Controller<T>,
     /// Of the core.
-    pub state: ControllerState<T>,
+    pub state: State<T>,
     /// The ideal arm.
     pub plant: Plant,
     /// q_d \[rad\].
     pub posture: JointVector<f64>,
-    config: ControllerConfig<T>,
+    config: ControllerConfig,
     motions: Vec<Trajectory<f64>>,
-    origins: Vec<Vector3<f64>>,
-    cycle_s: f64,
+    origins: Vec<Target<f64>>,
     cycle: u32,
 }
 
@@ -59,7 +64,7 @@ pub struct Seen<T: Real> {
     pub t_s: f64,
     /// True state at that time.
     pub state: JointState<f64>,
-    /// |x_d - x| per level \[m\], over its axes; position levels only.
+    /// |x_d - x| per level \[m\], over its axes; levels with a position as target only.
     pub errors: Vec<f64>,
     /// Answer of the controller.
     pub step: Step<T>,
@@ -67,10 +72,10 @@ pub struct Seen<T: Real> {
 
 impl<T: Real> ClosedLoop<T> {
     /// At rest in `start` \[rad\], which is q_d too; one motion per level about
-    /// where its point is then.
+    /// where its point is then. A level without a motion rests there.
     #[must_use]
     pub fn new(
-        config: &ControllerConfig<T>,
+        config: &ControllerConfig,
         start: JointVector<f64>,
         motions: &[Trajectory<f64>],
     ) -> Self {
@@ -81,30 +86,28 @@ impl<T: Real> ClosedLoop<T> {
     #[must_use]
     pub fn with_arm(
         arm: &ArmParameters,
-        config: &ControllerConfig<T>,
+        config: &ControllerConfig,
         start: JointVector<f64>,
         motions: &[Trajectory<f64>],
     ) -> Self {
-        let model = ArmModel::new(arm).expect("a valid arm");
-        let controller = Controller::new(&model, config).expect("a valid configuration");
-        let cycle_s = config.cycle_s.to_f64();
-        let plant = Plant::new(PlantKind::Ideal, arm, start, cycle_s, 1);
-        let origins = config.tasks.iter().map(|task| {
-            let point = task.point.cast::<f64>();
-            plant
-                .model()
-                .point(plant.state(), point.link, &point.offset)
-                .0
-        });
+        let controller = Controller::new(arm, config).expect("a valid configuration");
+        let origins = controller.rest_reference(&start.map(T::from_f64));
+        let mut origins: Vec<_> = origins.targets().iter().map(Target::cast).collect();
+        let plant = Plant::new(PlantKind::Ideal, arm, start, config.cycle_s, 1);
+        // Points by the plant, so that no error of the core's hides in the reference.
+        for (task, origin) in config.tasks.tasks().iter().zip(&mut origins) {
+            if let (Tracked::Position(point), Target::Position { x, .. }) = (task.tracked, origin) {
+                *x = true_point(&plant, point);
+            }
+        }
         Self {
             controller,
-            state: ControllerState::new(),
-            origins: origins.collect(),
+            state: State::new(),
+            origins,
             plant,
             posture: start,
             config: config.clone(),
             motions: motions.to_vec(),
-            cycle_s,
             cycle: 0,
         }
     }
@@ -112,50 +115,70 @@ impl<T: Real> ClosedLoop<T> {
     /// Starts elsewhere \[rad\] at rest; references and q_d stay.
     #[must_use]
     pub fn from(mut self, start: JointVector<f64>) -> Self {
-        let arm = self.controller.model().parameters();
-        self.plant = Plant::new(PlantKind::Ideal, arm, start, self.cycle_s, 1);
+        let arm = self.controller.arm().parameters();
+        self.plant = Plant::new(PlantKind::Ideal, arm, start, self.config.cycle_s, 1);
         self
+    }
+
+    /// What the motions ask for now.
+    #[must_use]
+    pub fn reference(&self) -> Reference<f64> {
+        let mut targets = self.origins.clone();
+        for (target, motion) in targets.iter_mut().zip(&self.motions) {
+            if let Target::Position { x, .. } = target {
+                *target = motion.sample(x, self.time());
+            }
+        }
+        Reference::from_targets(&targets, self.posture).expect("as many as levels")
     }
 
     /// One cycle with the product's law and no contact.
     pub fn step(&mut self) -> Seen<T> {
-        self.step_with(TorqueDemand::hierarchical, |_, _, _| JointVector::zeros())
+        let reference = self.reference();
+        self.step_towards(&reference, no_contact)
     }
 
-    /// One cycle with any law; `external` as in [`Plant::advance`].
-    pub fn step_with(
+    /// The same with a reference of its own; `external` as in [`Plant::advance`].
+    pub fn step_towards(
         &mut self,
-        law: impl FnOnce(&Cycle<'_, T>) -> TorqueDemand<T>,
+        reference: &Reference<f64>,
         external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) -> Seen<T> {
-        let t_s = f64::from(self.cycle) * self.cycle_s;
-        let state = *self.plant.state();
-        let references: Vec<_> = (self.motions.iter().zip(&self.origins))
-            .map(|(motion, origin)| motion.sample(origin, t_s))
-            .collect();
-        let levels = self.config.tasks.iter().zip(&references);
-        let errors = levels
-            .filter(|(task, _)| task.kind == TaskKind::Position)
-            .map(|(task, reference)| {
-                let point = task.point.cast::<f64>();
-                let model = self.plant.model();
-                let error = reference.x - model.point(&state, point.link, &point.offset).0;
-                let axes = (0..3).filter(|&axis| task.axes.xyz[axis]);
-                axes.map(|axis| error[axis].powi(2)).sum::<f64>().sqrt()
-            })
-            .collect();
-        let reference = Reference {
-            tasks: references.iter().map(cast).collect(),
-            posture: self.posture.map(T::from_f64),
+        self.cycle(reference, external, |controller, state, input| {
+            controller.step(state, input.measurement, input.reference)
+        })
+    }
+
+    /// One cycle with any law in the place of the stage that demands the torque;
+    /// `external` as in [`Plant::advance`].
+    pub fn step_with(
+        &mut self,
+        law: impl FnOnce(&Controller<T>, &Input<'_, T>, &mut Data<T>),
+        external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
+    ) -> Seen<T> {
+        let reference = self.reference();
+        self.cycle(&reference, external, |controller, state, input| {
+            controller.step_with(state, input.measurement, input.reference, law)
+        })
+    }
+
+    fn cycle(
+        &mut self,
+        reference: &Reference<f64>,
+        external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
+        step: impl FnOnce(&Controller<T>, &mut State<T>, &Input<'_, T>) -> Step<T>,
+    ) -> Seen<T> {
+        let (t_s, state) = (self.time(), *self.plant.state());
+        let errors = self.errors(reference);
+        let input = Input {
+            measurement: &Measurement {
+                q: state.q.map(T::from_f64),
+                dq: state.dq.map(T::from_f64),
+                interval_s: T::from_f64(self.config.cycle_s),
+            },
+            reference: &cast(reference),
         };
-        let measurement = Measurement {
-            q: state.q.map(T::from_f64),
-            dq: state.dq.map(T::from_f64),
-            interval_s: T::from_f64(self.cycle_s),
-        };
-        let step = self
-            .controller
-            .step_with(&mut self.state, &measurement, &reference, law);
+        let step = step(&self.controller, &mut self.state, &input);
         self.plant
             .advance(t_s, &step.torque.map(T::to_f64), external);
         self.cycle += 1;
@@ -166,17 +189,42 @@ impl<T: Real> ClosedLoop<T> {
             step,
         }
     }
+
+    fn time(&self) -> f64 {
+        f64::from(self.cycle) * self.config.cycle_s
+    }
+
+    fn errors(&self, reference: &Reference<f64>) -> Vec<f64> {
+        let levels = self.config.tasks.tasks().iter().zip(reference.targets());
+        let error = |(task, target): (&Task, &Target<f64>)| {
+            let (Tracked::Position(point), Target::Position { x, .. }) = (task.tracked, target)
+            else {
+                return None;
+            };
+            let error = x - true_point(&self.plant, point);
+            Some(task.axes.select(&error).norm())
+        };
+        levels.filter_map(error).collect()
+    }
+}
+
+/// Where a point of the plant is \[m\].
+#[must_use]
+pub fn true_point(plant: &Plant, point: LinkPoint) -> Vector3<f64> {
+    let LinkPoint { link, offset } = point;
+    let (model, state) = (plant.model(), plant.state());
+    model.point(state, link.number(), &offset.into()).0
 }
 
 /// A reference in another precision.
+///
+/// # Panics
+/// Never.
 #[must_use]
-pub fn cast<T: Real>(reference: &TaskReference<f64>) -> TaskReference<T> {
-    TaskReference {
-        x: reference.x.map(T::from_f64),
-        orientation: reference.orientation.map(T::from_f64),
-        dx: reference.dx.map(T::from_f64),
-        ddx: reference.ddx.map(T::from_f64),
-    }
+pub fn cast<T: Real>(reference: &Reference<f64>) -> Reference<T> {
+    let targets: Vec<_> = reference.targets().iter().map(Target::cast).collect();
+    let posture = reference.posture.map(T::from_f64);
+    Reference::from_targets(&targets, posture).expect("as many as before")
 }
 
 /// Root of the mean square, of values in metres, in millimetres.

@@ -1,74 +1,128 @@
 //! Every configuration that cannot be is refused with one line that says what
 //! would be allowed.
 
-use controller_core::config::{ConfigError, ControllerConfig, DEAD_CYCLES_MAX, GAIN_MAX};
-use controller_core::controller::Controller;
-use controller_core::joint::{Matrix3, diagonal};
-use controller_core::law::NullDamping;
-use controller_core::task::Axes;
-use stratum_tests::config::{FLANGE, reference, three_level};
-use stratum_tests::lwr;
+use controller_core::arm::{ArmError, LWR_IV};
+use controller_core::gain::diagonal;
+use controller_core::joint::Vector3;
+use controller_core::law::null_space::NullDamping;
+use controller_core::ranges::{DEAD_CYCLES_MAX, GAIN_MAX};
+use controller_core::task::Tracked;
+use controller_core::{
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, State, Target, Task, TaskSet,
+};
+use stratum_tests::config::{FLANGE, REFERENCE_GAINS, three_level, with_tasks};
+use stratum_tests::controller;
 
-fn refused(change: impl FnOnce(&mut ControllerConfig<f64>)) -> (ConfigError, String) {
+use super::{at, resting, start};
+
+fn refused(change: impl FnOnce(&mut ControllerConfig)) -> (ConfigError, String) {
     let mut config = three_level();
     change(&mut config);
-    let error = Controller::new(&lwr(), &config).expect_err("a configuration that cannot be");
+    let controller = Controller::<f64>::new(&LWR_IV, &config);
+    let error = controller.expect_err("a configuration that cannot be");
     (error, error.to_string())
 }
 
-fn line(change: impl FnOnce(&mut ControllerConfig<f64>)) -> String {
+fn line(change: impl FnOnce(&mut ControllerConfig)) -> String {
     refused(change).1
 }
 
+/// Why the tasks of the three-level configuration make no set once one has changed.
+fn set_line(level: usize, change: impl FnOnce(&mut Task)) -> String {
+    let mut tasks = three_level().tasks.tasks().to_vec();
+    change(&mut tasks[level - 1]);
+    let error = TaskSet::new(&tasks).expect_err("tasks that make no set");
+    error.to_string()
+}
+
+/// Levels first, then rows; seven of either are allowed.
 #[test]
-fn tasks_without_rows_or_with_too_many_are_refused() {
+fn sets_have_one_to_seven_levels_and_rows() {
+    let flange = |axes| Task::position(FLANGE, axes, REFERENCE_GAINS);
     assert_eq!(
-        line(|config| config.tasks.clear()),
-        "the tasks have 0 rows together; allowed 1 to 7"
+        TaskSet::new(&[]).map_err(|error| error.to_string()),
+        Err("there are 0 tasks; allowed 1 to 7".into())
     );
     assert_eq!(
-        line(|config| *config = reference(&[(FLANGE, Axes::XYZ); 3])),
-        "the tasks have 9 rows together; allowed 1 to 7"
+        TaskSet::new(&[flange(Axes::X); 8]),
+        Err(ConfigError::Levels { levels: 8 })
     );
     assert_eq!(
-        line(|config| config.tasks[1].axes.xyz = [false; 3]),
-        "level 2: the task has no axis; it needs 1 to 3 of x, y, z"
+        TaskSet::new(&[flange(Axes::XYZ); 8]).map_err(|error| error.to_string()),
+        Err("there are 8 tasks; allowed 1 to 7".into())
     );
+    assert_eq!(
+        TaskSet::new(&[flange(Axes::XYZ); 3]),
+        Err(ConfigError::Rows { rows: 9 })
+    );
+    assert_eq!(
+        TaskSet::new(&[flange(Axes::XY); 4]).map_err(|error| error.to_string()),
+        Err("the tasks have 8 rows together; allowed 1 to 7".into())
+    );
+    for count in 1..=7 {
+        let tasks = vec![flange(Axes::Y); count];
+        let set = TaskSet::new(&tasks).expect("up to seven");
+        assert_eq!(set.tasks(), tasks, "kept in this order");
+        let config = with_tasks(&tasks);
+        assert_eq!(controller::<f64>(&config).level_count(), count);
+    }
+    let seven = [Axes::XYZ, Axes::XYZ, Axes::Z].map(flange);
+    assert_eq!(TaskSet::new(&seven).expect("seven rows").tasks(), seven);
 }
 
 #[test]
 fn points_that_are_not_on_the_arm_are_refused() {
-    for link in [0, 8] {
+    for value in [f64::NAN, 10.5, f64::NEG_INFINITY, -10.000001] {
+        let place = |point: LinkPoint| LinkPoint {
+            offset: [0.0, value, 0.0],
+            ..point
+        };
         assert_eq!(
-            line(|config| config.tasks[1].point.link = link),
-            format!("level 2: point on link {link}; allowed 1 to 7")
-        );
-    }
-    for value in [f64::NAN, 10.5, f64::NEG_INFINITY] {
-        assert_eq!(
-            line(|config| config.tasks[0].point.offset.y = value),
+            set_line(1, |task| task.tracked = Tracked::Position(place(FLANGE))),
             format!("level 1: point offset {value} m; allowed -10 to 10")
         );
     }
+    // A link that the arm does not have has no name.
+    let numbers = (0..10).filter_map(Link::from_number).map(Link::number);
+    assert!(numbers.eq(1..=7));
+    assert_eq!(Link::from_number(usize::MAX), None);
+}
+
+/// The tables of the arm are refused through the controller as well.
+#[test]
+fn an_arm_that_cannot_be_is_refused() {
+    let mut arm = LWR_IV;
+    arm.links[3].mass = f64::NAN;
+    let error = Controller::<f64>::new(&arm, &three_level()).expect_err("no such arm");
+    assert!(matches!(
+        error,
+        ConfigError::Arm(ArmError::NonFinite { link: 4, .. })
+    ));
+    assert_eq!(error.to_string(), "link 4: mass = NaN; it must be finite");
 }
 
 #[test]
 fn gains_that_are_no_gains_are_refused() {
     assert_eq!(
-        line(|config| config.tasks[0].stiffness[(1, 1)] = f64::NAN),
+        set_line(1, |task| task.gains.stiffness[1][1] = f64::NAN),
         "level 1: task stiffness [1/s2]: entry NaN; allowed -1e9 to 1e9"
     );
     assert_eq!(
-        line(|config| config.tasks[1].damping[(0, 0)] = 2.0 * GAIN_MAX),
+        set_line(2, |task| task.gains.damping[0][0] = 2.0 * GAIN_MAX),
         "level 2: task damping [1/s]: entry 2000000000; allowed -1e9 to 1e9"
     );
     assert_eq!(
-        line(|config| config.null_space.stiffness[(6, 0)] = 0.5),
+        set_line(1, |task| task.gains.stiffness[2][0] = 3.0),
+        "level 1: task stiffness [1/s2]: entry (3, 1) differs from (1, 3) by 3; the matrix must \
+         be symmetric"
+    );
+    assert_eq!(
+        line(|config| config.null_space.stiffness[6][0] = 0.5),
         "null-space stiffness [Nm/rad]: entry (7, 1) differs from (1, 7) by 0.5; the matrix must \
          be symmetric"
     );
     assert_eq!(
-        line(|config| config.tasks[0].damping[(2, 2)] = 0.0),
+        set_line(1, |task| task.gains.damping[2][2] = 0.0),
         "level 1: task damping [1/s]: pivot 0 at row 3; the matrix must be positive definite (a \
          diagonal one: every entry above 0)"
     );
@@ -79,21 +133,39 @@ fn gains_that_are_no_gains_are_refused() {
          diagonal one: every entry above 0)"
     );
     // Symmetric with positive entries, and yet not definite.
-    let indefinite = Matrix3::new(1.0, 2.0, 0.0, 2.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    let indefinite = [[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     assert_eq!(
-        line(|config| config.tasks[0].stiffness = indefinite),
+        set_line(1, |task| task.gains.stiffness = indefinite),
         "level 1: task stiffness [1/s2]: pivot -3 at row 2; the matrix must be positive definite \
          (a diagonal one: every entry above 0)"
     );
 }
 
-/// Rows and columns of axes that the task does not control are not read.
+/// Rows and columns of axes that the task does not control have no influence.
 #[test]
 fn gains_of_uncontrolled_axes_do_not_matter() {
-    let mut config = three_level::<f64>();
-    config.tasks[1].stiffness[(2, 2)] = -1.0;
-    config.tasks[1].stiffness[(0, 2)] = f64::NAN;
-    assert!(Controller::new(&lwr(), &config).is_ok());
+    let with = |change: fn(&mut Task)| {
+        let mut tasks = three_level().tasks.tasks().to_vec();
+        change(&mut tasks[1]);
+        controller::<f64>(&with_tasks(&tasks))
+    };
+    let _ = with(|task| task.gains.stiffness[0][2] = f64::NAN);
+    let torque = |controller: Controller<f64>| {
+        let mut reference = resting(&controller, &start());
+        if let Target::Position { x, .. } = &mut reference.targets_mut()[1] {
+            *x += Vector3::repeat(0.1);
+        }
+        let step = controller.step(&mut State::new(), &at(start()), &reference);
+        assert!(step.status.is_clear(), "{:?}", step.status);
+        step.torque
+    };
+    let other = with(|task| {
+        task.gains.stiffness[2][2] = -1.0;
+        task.gains.stiffness[0][2] = 1e12;
+        task.gains.damping[2][1] = 7.0;
+        task.gains.damping[1][2] = -1e12;
+    });
+    assert_eq!(torque(with(|_| ())), torque(other));
 }
 
 #[test]
@@ -146,10 +218,10 @@ fn damping_too_strong_for_the_cycle_is_refused_with_joint_value_and_posture() {
 #[test]
 fn inertia_shaped_damping_has_its_own_bound() {
     let with = |rate: f64, dead_cycles| {
-        let mut config = three_level::<f64>();
+        let mut config = three_level();
         config.null_space.damping = NullDamping::Inertia(rate);
         config.dead_cycles = dead_cycles;
-        Controller::new(&lwr(), &config)
+        Controller::<f64>::new(&LWR_IV, &config)
     };
     for dead_cycles in [0, 1, 2] {
         assert!(with(249.0, dead_cycles).is_ok(), "h c = 0.498");

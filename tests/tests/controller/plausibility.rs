@@ -1,21 +1,23 @@
 //! Measurements and references that cannot be true.
 
-use controller_core::controller::ControllerState;
-use controller_core::fault::{Fault, FaultKind, Quantity};
-use controller_core::measurement::{
-    INTERVAL_FACTORS, Measurement, POSITION_MARGIN, QUATERNION_NORMS, Reference, SPEED_FACTOR,
-};
+use controller_core::fault::{FaultKind, Quantity};
+use controller_core::joint::Vector3;
+use controller_core::ranges::{INTERVAL_FACTORS, POSITION_MARGIN, SPEED_FACTOR};
 use controller_core::real::Real;
+use controller_core::{Fault, Measurement, Reference, State, Target};
+use stratum_tests::config::two_level;
+use stratum_tests::controller;
 
-use super::{at, resting, start, two_levels};
+use super::{at, resting, start};
 
 /// Exactly at its bound a number is believed; the next larger one is not, and the
 /// fault says what, where, how much and what would be allowed. In `T`.
 fn bounds_are_exact<T: Real>(next_up: fn(T) -> T) {
-    let (model, controller) = two_levels::<T>();
+    let controller = controller::<T>(&two_level());
+    let model = controller.arm();
+    let reference = resting(&controller, &start());
     let check = |measurement: Measurement<T>| {
-        let mut state = ControllerState::new();
-        let step = controller.step(&mut state, &measurement, &resting(1, &start()));
+        let step = controller.step(&mut State::new(), &measurement, &reference);
         step.status.fault
     };
     let refused = |measurement, quantity, index, value: T, bound: T| {
@@ -100,44 +102,45 @@ fn measurements_are_believed_up_to_their_bounds_and_no_further() {
 
 #[test]
 fn each_wrong_reference_is_named() {
-    let (_, controller) = two_levels::<f64>();
+    let controller = controller::<f64>(&two_level());
     let line = |change: fn(&mut Reference<f64>)| {
-        let mut reference = resting(1, &start());
+        let mut reference = resting(&controller, &start());
         change(&mut reference);
-        let step = controller.step(&mut ControllerState::new(), &at(start()), &reference);
+        let step = controller.step(&mut State::new(), &at(start()), &reference);
         step.status.fault.expect("a fault").to_string()
     };
+    fn position(reference: &mut Reference<f64>) -> [&mut Vector3<f64>; 3] {
+        match &mut reference.targets_mut()[0] {
+            Target::Position { x, dx, ddx } => [x, dx, ddx],
+            other => panic!("{other:?}"),
+        }
+    }
     assert_eq!(
-        line(|reference| reference.tasks[0].ddx.y = f64::NAN),
-        "implausible: reference of level 1 is NaN; it must be finite"
+        line(|reference| position(reference)[0].x = f64::NEG_INFINITY),
+        "implausible: target of level 1 is -inf; it must be finite"
+    );
+    assert_eq!(
+        line(|reference| position(reference)[1].z = f64::INFINITY),
+        "implausible: target of level 1 is inf; it must be finite"
+    );
+    assert_eq!(
+        line(|reference| position(reference)[2].y = f64::NAN),
+        "implausible: target of level 1 is NaN; it must be finite"
     );
     assert_eq!(
         line(|reference| reference.posture[4] = f64::INFINITY),
         "implausible: desired posture [rad] of joint 5 is inf; it must be finite"
     );
     assert_eq!(
-        line(|reference| reference.tasks.clear()),
-        "implausible: number of task references is 0; allowed 1 to 1"
+        line(|reference| *reference = Reference::hold(0, reference.posture)),
+        "implausible: number of targets is 0; allowed 1 to 1"
+    );
+    assert_eq!(
+        line(|reference| *reference = Reference::hold(7, reference.posture)),
+        "implausible: number of targets is 7; allowed 1 to 1"
     );
     assert!(
-        line(|reference| reference.tasks[0].x.z = 1e308)
+        line(|reference| position(reference)[0].z = 1e308)
             .starts_with("non_finite_torque: demanded torque [Nm] of joint")
-    );
-    // The norm itself, squared in the fault.
-    assert!(line(|reference| reference.tasks[0].orientation *= 2.1).contains("level 1"));
-    assert_eq!(QUATERNION_NORMS, [0.5, 2.0]);
-    for norm in QUATERNION_NORMS {
-        let mut reference = resting(1, &start());
-        reference.tasks[0].orientation *= norm;
-        let step = controller.step(&mut ControllerState::new(), &at(start()), &reference);
-        assert_eq!(step.status.fault, None);
-    }
-    // They go over wires.
-    assert_eq!(
-        (
-            FaultKind::Implausible as u8,
-            FaultKind::NonFiniteTorque as u8
-        ),
-        (32, 33)
     );
 }

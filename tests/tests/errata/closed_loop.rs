@@ -1,37 +1,32 @@
 //! Errata that show when the loop is closed around the ideal plant.
 
+use controller_core::Controller;
+use controller_core::arm::LWR_IV;
+use controller_core::cycle::observer::Observer;
+use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
-use controller_core::law::{Cycle, Posture, TorqueDemand};
-use controller_core::model::LWR_IV;
-use controller_core::observer::Observer;
-use controller_core::trajectory::Trajectory;
+use controller_core::law::control::TorqueDemand;
+use controller_core::law::null_space::Posture;
+use controller_core::task::trajectory::Trajectory;
 use hil_sim::plant::PlantModel;
 use stratum_tests::config::{three_level, two_level};
 use stratum_tests::oracle::closed_loop::{
-    CASE_START, ClosedLoop, TWO_LEVEL_START, circle, posture, rms_mm,
+    CASE_START, ClosedLoop, TWO_LEVEL_START, circle, no_contact, posture, rms_mm,
 };
 use stratum_tests::oracle::matrix::Matrix;
 use stratum_tests::oracle::sample::{Sample, Wish, configuration, terms};
 use stratum_tests::oracle::{Oracle, Variant};
 use stratum_tests::random::States;
-use stratum_tests::{evaluate, lwr};
+use stratum_tests::{controller, evaluate, lwr};
 
 use super::{STATES, split, states};
 
 /// The oracle's torque as a law of the core's cycle.
-fn printed(
-    loop_: &ClosedLoop<f64>,
-    variant: Variant,
-) -> impl Fn(&Cycle<'_, f64>) -> TorqueDemand<f64> + use<> {
-    let null_space = *loop_.controller.null_space();
-    move |cycle| {
-        let torque = Oracle::new(terms(cycle, &null_space)).torque(variant);
-        TorqueDemand(JointVector::from_fn(|i, _| torque.at(i, 0)))
+fn printed(variant: Variant) -> impl Fn(&Controller<f64>, &Input<'_, f64>, &mut Data<f64>) {
+    move |controller, _, data| {
+        let torque = Oracle::new(terms(controller.compliance(), data)).torque(variant);
+        data.demand = TorqueDemand(JointVector::from_fn(|i, _| torque.at(i, 0)));
     }
-}
-
-fn no_contact(_: f64, _: &PlantModel, _: &JointState<f64>) -> JointVector<f64> {
-    JointVector::zeros()
 }
 
 /// Erratum 1, eq (33): from an offset of 1 mrad in the null space, the sign as
@@ -42,25 +37,18 @@ fn erratum_1_the_stiffness_of_eq_33_needs_a_plus() {
     let start = posture(TWO_LEVEL_START);
     let hold = ClosedLoop::<f64>::new(&two_level(), start, &[Trajectory::Hold]);
     // The self-motion of the arm: what a unit speed of joint 3 leaves to N.
-    let (_, dynamics) = evaluate(hold.controller.model(), hold.plant.state());
-    let mut projected = JointVector::zeros();
     let mut first = hold.clone();
-    let _ = first.step_with(
-        |cycle| {
-            let projector = cycle.hierarchy.null_projector(&dynamics.cholesky);
-            projected = projector.column(2).into_owned();
-            TorqueDemand::hierarchical(cycle)
-        },
-        no_contact,
-    );
-    let offset = projected.normalize() * 1e-3;
+    let _ = first.step();
+    let data = first.state.data();
+    let projector = data.hierarchy.null_projector(&data.dynamics.cholesky);
+    let offset = projector.column(2).normalize() * 1e-3;
     let run = |sign: f64, duration_s: f64| {
         let mut moved = hold.clone().from(start + offset);
         let variant = Variant {
             stiffness_sign: sign,
             ..Variant::EXACT
         };
-        let law = printed(&moved, variant);
+        let law = printed(variant);
         loop {
             let seen = moved.step_with(&law, no_contact);
             let away = (seen.state.q - start).amax();
@@ -85,24 +73,20 @@ fn erratum_1_the_stiffness_of_eq_33_needs_a_plus() {
 #[test]
 fn erratum_1_the_storage_function_is_dissipated_only_with_the_plus() {
     const STEP: f64 = 1e-6;
-    let (model, plant) = (lwr(), PlantModel::new(&LWR_IV));
-    let config = configuration::<f64>(split("3+2"));
+    let plant = PlantModel::new(&LWR_IV);
+    let controller = controller(&configuration(split("3+2")));
     let mut growing = 0;
     states("3+2", 1, |sample, oracle, _| {
-        let dq = JointVector::from_fn(|i, _| sample.motion.null_velocity[i]);
-        let wish = Wish {
-            tasks: Vec::new(),
-            posture: sample.posture,
-            residual: JointVector::zeros(),
-        };
-        let at = |q, dq| Sample::new(&model, &config, JointState { q, dq }, &wish);
+        let (q, dq) = (sample.data.joints.q, sample.data.motion.null_velocity);
+        let wish = Wish::rest(&controller, sample.data.posture);
+        let at = |q, dq| Sample::new(&controller, JointState { q, dq }, &wish);
         let storage = |sample: &Sample| {
-            let n = sample.motion.null_velocity;
-            let stretch = wish.posture - sample.state.q;
-            let spring = stretch.dot(&(config.null_space.stiffness * stretch));
-            (n.dot(&(sample.dynamics.mass_matrix * n)) + spring) / 2.0
+            let Sample { data, .. } = sample;
+            let (n, stretch) = (data.motion.null_velocity, data.posture - data.joints.q);
+            let spring = stretch.dot(&(controller.compliance().stiffness * stretch));
+            (n.dot(&(data.dynamics.mass_matrix * n)) + spring) / 2.0
         };
-        let resting = at(sample.state.q, dq);
+        let resting = at(q, dq);
         let terms = resting.terms();
         let dissipated = (terms.dq.t() * &terms.damping * &terms.dq).at(0, 0);
         let spring = (terms.dq.t() * &terms.stiffness * &terms.posture_error).at(0, 0);
@@ -114,7 +98,6 @@ fn erratum_1_the_storage_function_is_dissipated_only_with_the_plus() {
             };
             let torque = resting_oracle.torque(variant);
             let torque = JointVector::from_fn(|i, _| torque.at(i, 0));
-            let q = sample.state.q;
             let ddq = plant.forward_dynamics(&q, &dq, &torque, &JointVector::zeros());
             let [ahead, behind] =
                 [STEP, -STEP].map(|t| storage(&at(q + dq * t + ddq * (t * t / 2.0), dq + ddq * t)));
@@ -143,7 +126,7 @@ fn erratum_3_uncoupled_the_second_level_lags_in_closed_loop() {
     let level_2 = |variant: Variant, period_s: f64| {
         let motions = [circle(0.04, period_s), Trajectory::Hold];
         let mut closed = ClosedLoop::<f64>::new(&three_level(), start, &motions);
-        let law = printed(&closed, variant);
+        let law = printed(variant);
         let mut errors = Vec::new();
         for _ in 0..3500 {
             let seen = closed.step_with(&law, no_contact);
@@ -173,11 +156,10 @@ fn erratum_5_eq_30_starts_from_the_present_momentum() {
         started: true,
         ..from_present
     };
-    assert_eq!(
-        from_present.update(&gain, 0.002, &dynamics.momentum).amax(),
-        0.0
-    );
-    let jump = from_zero.update(&gain, 0.002, &dynamics.momentum).amax();
+    from_present.update(&gain, 0.002, &dynamics.momentum);
+    assert_eq!(from_present.residual.amax(), 0.0);
+    from_zero.update(&gain, 0.002, &dynamics.momentum);
+    let jump = from_zero.residual.amax();
     let expected = -libm::expm1(-0.1) * dynamics.momentum.amax() / 0.002;
     println!("from p = 0 the residual starts with {jump:.0} Nm");
     // Rounding of p / h.
@@ -197,10 +179,10 @@ fn erratum_8_the_integrated_posture_of_eq_51_drifts() {
         link.position_limit = 12.0;
     }
     let travel = |posture_kind| {
-        let mut config = two_level::<f64>();
+        let mut config = two_level();
         config.null_space.posture = posture_kind;
         let start = posture(TWO_LEVEL_START);
-        let mut closed = ClosedLoop::with_arm(&free, &config, start, &[circle(0.1, 6.0)]);
+        let mut closed = ClosedLoop::<f64>::with_arm(&free, &config, start, &[circle(0.1, 6.0)]);
         let (mut low, mut high, mut error) = (start, start, 0.0f64);
         for _ in 0..10_000 {
             let seen = closed.step();
@@ -227,19 +209,15 @@ fn erratum_9_a_constant_push_leaves_the_posture_where_it_balances() {
     let force = Vector3::from([0.0, 35.0, 0.0]);
     let elbow = Vector3::zeros();
     let mut closed = ClosedLoop::<f64>::new(&two_level(), start, &[Trajectory::Hold]);
-    let mut null_space = *closed.controller.null_space();
-    null_space.posture = Posture::Constant;
     let (mut left, mut pushed, mut away) = (0.0, 0.0, 0.0f64);
     for _ in 0..5_000 {
-        let mut seen_terms = None;
-        let seen = closed.step_with(
-            |cycle| {
-                seen_terms = Some(terms(cycle, &null_space));
-                TorqueDemand::hierarchical(cycle)
-            },
-            |_, model, state| model.point_torque(&state.q, 3, &elbow, &force),
-        );
-        let oracle = Oracle::new(seen_terms.expect("no fault"));
+        let reference = closed.reference();
+        let seen = closed.step_towards(&reference, |_, model, state| {
+            model.point_torque(&state.q, 3, &elbow, &force)
+        });
+        assert!(seen.step.status.fault.is_none(), "{:?}", seen.step.status);
+        let compliance = closed.controller.compliance();
+        let oracle = Oracle::new(terms(compliance, closed.state.data()));
         let model = closed.plant.model();
         let tau_ext = -model.point_torque(&seen.state.q, 3, &elbow, &force);
         let tau_ext = Matrix::of(&tau_ext);

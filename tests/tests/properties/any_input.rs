@@ -2,14 +2,15 @@
 
 use std::cell::Cell;
 
-use controller_core::controller::{Controller, ControllerState};
-use controller_core::fault::Fault;
+use controller_core::arm::LWR_IV;
+use controller_core::fault::FaultKind;
 use controller_core::joint::Vector3;
-use controller_core::measurement::{Measurement, Reference};
-use controller_core::model::{ArmModel, LWR_IV};
 use controller_core::real::Real;
-use controller_core::task::{TaskKind, TaskReference};
+use controller_core::task::{Tracked, orientation};
+use controller_core::{Fault, Link, Measurement, Reference, State, Target};
 use proptest::prelude::*;
+use stratum_tests::config::FLANGE;
+use stratum_tests::controller;
 use stratum_tests::oracle::sample::configuration;
 use stratum_tests::random::States;
 
@@ -18,8 +19,11 @@ use super::{CASES, for_all, regular};
 /// One wrong number somewhere: a slot and a value.
 type Wrong = (usize, f64);
 
-/// Slots: 0..7 q, 7..14 dq, 14 h, 15..22 q_d, 22 the number of references, then
-/// 13 numbers per reference.
+/// Slots: 0..7 q, 7..14 dq, 14 h, 15..22 q_d, 22 the number of targets, 23 and 24 the
+/// kind of the target of a level, 25 and 26 whether it holds, then the numbers of the
+/// targets: 9 of a position, 10 of an orientation.
+const SLOTS: usize = 27 + 9 + 10;
+
 fn wrong() -> impl Strategy<Value = Wrong> {
     let special = vec![
         f64::NAN,
@@ -42,7 +46,7 @@ fn wrong() -> impl Strategy<Value = Wrong> {
         -10.0..10.0f64,
         -1e-3..1e-3f64,
     ];
-    (0..23 + 13 * 2usize, value)
+    (0..SLOTS, value)
 }
 
 fn replaced<T: Real>(
@@ -51,24 +55,54 @@ fn replaced<T: Real>(
     (slot, value): Wrong,
 ) {
     let value = T::from_f64(value);
+    let posture = reference.posture;
+    let targets = reference.targets_mut();
     match slot {
         0..7 => measurement.q[slot] = value,
         7..14 => measurement.dq[slot - 7] = value,
         14 => measurement.interval_s = value,
         15..22 => reference.posture[slot - 15] = value,
-        22 => drop(reference.tasks.pop()),
+        22 => {
+            let fewer = &targets[..targets.len().saturating_sub(1)];
+            *reference = Reference::from_targets(fewer, posture).expect("fewer");
+        }
+        23 | 24 => {
+            if let Some(target) = targets.get_mut(slot - 23) {
+                *target = match target {
+                    Target::Orientation { .. } => Target::position([T::ONE; 3]),
+                    _ => Target::orientation(orientation::identity()),
+                };
+            }
+        }
+        25 | 26 => {
+            if let Some(target) = targets.get_mut(slot - 25) {
+                *target = Target::Hold;
+            }
+        }
         _ => {
-            let Some(task) = reference.tasks.get_mut((slot - 23) / 13) else {
-                return;
-            };
-            match (slot - 23) % 13 {
-                axis @ 0..3 => task.x[axis] = value,
-                axis @ 3..6 => task.dx[axis - 3] = value,
-                axis @ 6..9 => task.ddx[axis - 6] = value,
-                axis => task.orientation[axis - 9] = value,
+            if let Some(number) = targets.iter_mut().flat_map(numbers).nth(slot - 27) {
+                *number = value;
             }
         }
     }
+}
+
+/// The numbers of a target.
+fn numbers<T: Real>(target: &mut Target<T>) -> Vec<&mut T> {
+    match target {
+        Target::Hold => Vec::new(),
+        Target::Position { x, dx, ddx } => x.iter_mut().chain(dx).chain(ddx).collect(),
+        Target::Orientation { q, w, dw } => q.iter_mut().chain(w).chain(dw).collect(),
+    }
+}
+
+/// Whether the target of each level is of its kind.
+fn fitting<T: Real>(targets: &[Target<T>]) -> bool {
+    (targets.iter().enumerate()).all(|(level, target)| match target {
+        Target::Hold => true,
+        Target::Position { .. } => level == 0,
+        Target::Orientation { .. } => level == 1,
+    })
 }
 
 /// Whether a measurement can be true, written down once more.
@@ -87,17 +121,16 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
 /// within limits, a fault is latched with the torque it held, and it is there
 /// exactly when something could not be true.
 fn anything_in_good_torque_out<T: Real>() {
-    let model = ArmModel::<T>::new(&LWR_IV).expect("the built-in arm is valid");
-    let config = configuration::<T>(&[
-        (TaskKind::Position, stratum_tests::config::FLANGE, "xyz"),
-        (TaskKind::Orientation, stratum_tests::config::FLANGE, "xz"),
-    ]);
-    let controller = Controller::new(&model, &config).expect("a valid configuration");
-    let (faults, clean) = (Cell::new(0u32), Cell::new(0u32));
+    let controller = controller::<T>(&configuration(&[
+        (Tracked::Position(FLANGE), "xyz"),
+        (Tracked::Orientation(Link::L7), "xz"),
+    ]));
+    let limits = controller.arm().torque_limit();
+    let (faults, clean, kinds) = (Cell::new(0u32), Cell::new(0u32), Cell::new(0u32));
     let cycle = prop::collection::vec(wrong(), 0..4);
     let sequence = (regular(), prop::array::uniform4(cycle));
     for_all(sequence, |((_, joints, seed), cycles)| {
-        let mut state = ControllerState::new();
+        let mut state = State::new();
         let mut random = States::new(seed);
         let mut latched = None;
         for replacements in cycles {
@@ -107,16 +140,16 @@ fn anything_in_good_torque_out<T: Real>() {
                 interval_s: T::from_f64(0.002),
             };
             let x = Vector3::from([random.signed(), random.signed(), 1.0]);
-            let reference = TaskReference::rest(x.map(T::from_f64));
-            let mut reference = Reference {
-                tasks: [reference; 2].into_iter().collect(),
-                posture: measurement.q,
-            };
+            let targets = [
+                Target::position(x.map(T::from_f64)),
+                Target::orientation(orientation::identity()),
+            ];
+            let mut reference = Reference::new(targets, measurement.q);
             for replacement in replacements {
                 replaced(&mut measurement, &mut reference, replacement);
             }
             let step = controller.step(&mut state, &measurement, &reference);
-            for (torque, limit) in step.torque.iter().zip(model.torque_limit()) {
+            for (torque, limit) in step.torque.iter().zip(limits) {
                 assert!(torque.finite() && torque.magnitude() <= *limit, "{torque}");
             }
             assert!(step.residual.iter().all(|r| r.finite()));
@@ -128,28 +161,39 @@ fn anything_in_good_torque_out<T: Real>() {
                     assert_eq!(text(step.status.fault), text(Some(fault)), "latched");
                     assert_eq!(step.torque, torque, "held");
                 }
-                None if step.status.fault.is_some() => faults.set(faults.get() + 1),
+                None if step.status.fault.is_some() => {
+                    faults.set(faults.get() + 1);
+                    let kind = step.status.fault.map(|fault| fault.kind);
+                    if kind == Some(FaultKind::WrongTarget) {
+                        kinds.set(kinds.get() + 1);
+                        assert!(!fitting(reference.targets()), "{reference:?}");
+                    }
+                }
                 None => {
                     clean.set(clean.get() + 1);
                     assert!(believable(&measurement), "{measurement:?}");
+                    assert!(fitting(reference.targets()), "{reference:?}");
+                    assert_eq!(reference.targets().len(), 2);
                 }
             }
-            let mut numbers = (reference.tasks.iter())
-                .flat_map(|task| task.x.iter().chain(&task.dx).chain(&task.ddx))
-                .chain(&reference.posture);
-            let moderate = numbers.all(|x| x.to_f64().abs() < 1e6);
-            let oriented = reference.tasks.iter().all(|task| {
-                let norm = task.orientation.map(T::to_f64).norm();
-                (0.501..1.999).contains(&norm)
+            let mut copy = reference.clone();
+            let mut all = copy.targets_mut().iter_mut().flat_map(numbers);
+            let moderate = all.all(|x| x.to_f64().abs() < 1e6)
+                && reference.posture.iter().all(|x| x.to_f64().abs() < 1e6);
+            let oriented = reference.targets().iter().all(|target| match target {
+                Target::Orientation { q, .. } => (0.501..1.999).contains(&q.map(T::to_f64).norm()),
+                _ => true,
             });
             let fine = believable(&measurement) && moderate && oriented;
-            if latched.is_none() && fine && reference.tasks.len() == 2 {
+            let fits = fitting(reference.targets()) && reference.targets().len() == 2;
+            if latched.is_none() && fine && fits {
                 assert_eq!(step.status.fault, None, "{measurement:?} {reference:?}");
             }
             latched = step.status.fault.map(|fault| (fault, step.torque));
         }
     });
     assert!(faults.get() > CASES / 4 && clean.get() > CASES / 4);
+    assert!(kinds.get() > CASES / 20, "{}", kinds.get());
 }
 
 #[test]
