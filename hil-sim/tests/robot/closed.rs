@@ -1,13 +1,10 @@
 //! The product's law on the other side of the datagrams: signs, times and origins
 //! of both sides fit together.
 
-use controller_core::arm::{ArmModel, LWR_IV};
-use controller_core::config::ControllerConfig;
-use controller_core::controller::{Controller, ControllerState};
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::JointVector;
-use controller_core::law::NullDamping;
-use controller_core::measurement::{Measurement, Reference};
+use controller_core::law::null_space::NullDamping;
+use controller_core::{Controller, Measurement, State};
 use fri::InterfaceState;
 use hil_sim::link::{Expect, LockStep, Peer};
 use hil_sim::plant::PlantKind::{self, Ideal, Realistic};
@@ -22,7 +19,7 @@ struct Bridge {
     client: Client,
     scenario: Scenario,
     controller: Controller<f64>,
-    state: ControllerState<f64>,
+    state: State<f64>,
     velocity: VelocityEstimator<f64>,
     start: Option<JointVector<f64>>,
     cycle: i32,
@@ -30,14 +27,13 @@ struct Bridge {
 
 impl Bridge {
     fn new(scenario: &Scenario) -> Self {
-        let model = ArmModel::new(&LWR_IV).expect("an arm");
-        let mut config: ControllerConfig<f64> = scenario.controller_config(0);
+        let mut config = scenario.controller_config(0).expect("levels");
         config.null_space.damping = NullDamping::Inertia(10.0);
         Self {
             client: Client::new(),
             scenario: scenario.clone(),
-            controller: Controller::new(&model, &config).expect("a controller"),
-            state: ControllerState::new(),
+            controller: Controller::new(scenario.arm(), &config).expect("a controller"),
+            state: State::new(),
             velocity: VelocityEstimator::new(CORNER_HZ),
             start: None,
             cycle: -500,
@@ -49,7 +45,7 @@ impl Bridge {
         let posture = *self.start.get_or_insert(q);
         let origins = self.scenario.origins_at(&posture);
         let t = f64::from(self.cycle.max(0)) * 0.002;
-        let reference: Reference<f64> = self.scenario.reference(&origins, &posture, t);
+        let reference = self.scenario.reference(&origins, &posture, t);
         let measurement = Measurement {
             q: state.q,
             dq: state.dq,
