@@ -3,8 +3,14 @@
 
 #[path = "controller/configuration.rs"]
 mod configuration;
+#[path = "controller/data.rs"]
+mod data;
+#[path = "controller/hold.rs"]
+mod hold;
 #[path = "controller/plausibility.rs"]
 mod plausibility;
+#[path = "controller/targets.rs"]
+mod targets;
 
 use controller_core::arm::LWR_IV;
 use controller_core::cycle::record::Recorder;
