@@ -12,6 +12,7 @@ mod fri;
 mod fri_check;
 mod host;
 mod limits;
+mod lines;
 mod panic_free;
 mod placement;
 mod same_bytes;
@@ -39,6 +40,7 @@ fri-m7 --check         the same by itself: trace as without a board, safe output
                        emergency stop and without a robot; with --serial the first
                        second over the serial port
 board-m7               the skeleton for the STM32H743: builds, code in ITCM, data in DTCM
+lines [REVISION]       lines of code, and of documentation per public item, by package
 missing-m7             prints what has to be installed for the first three, exit code 2 if anything
 
 same-bytes BASE [NEW] [--ignore PART]...
@@ -66,6 +68,8 @@ fn main() -> ExitCode {
         ["fri-m7", "--check"] => fri_check::run(Link::Ethernet),
         ["fri-m7", "--check", "--serial"] => fri_check::run(Link::Serial),
         ["board-m7"] => placement::run(),
+        ["lines"] => lines::run(None),
+        ["lines", revision] => lines::run(Some(revision)),
         ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         ["same-bytes", ref words @ ..] => match same_bytes::Comparison::parse(words) {
             Ok(comparison) => comparison.run(),
