@@ -1,12 +1,14 @@
 //! References over UDP, for `firmware-host run --references ADDR:PORT`: moves the
-//! point of level 1 to and fro along y.
+//! point of level 1 to and fro along y, and turns the link of level 2 about z with it, where
+//! that is an orientation.
 //!
 //! ```sh
 //! cargo run --release -p firmware-host --example stream_references -- 127.0.0.1:5600 -0.59 0.0 0.40
 //! ```
 //!
-//! The arguments are where to send, and the middle of the motion x y z [m], which
-//! should be near where the point is. 10 s at 500 references per second: 5 cm to
+//! The arguments are where to send, the middle of the motion x y z [m], and for a scenario
+//! with an orientation as level 2 the quaternion w x y z in the middle of its motion. Both
+//! should be near where the arm is. 10 s at 500 references per second: 5 cm and 0.1 rad to
 //! either side in 4 s, with a smooth start.
 
 use std::f64::consts::TAU;
@@ -15,6 +17,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 const RADIUS_M: f64 = 0.05;
+const ANGLE_RAD: f64 = 0.1;
 const PERIOD_S: f64 = 4.0;
 const START_S: f64 = 2.0;
 const LENGTH_S: f64 = 10.0;
@@ -24,7 +27,7 @@ fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{error}; allowed: ADDR:PORT X Y Z");
+            eprintln!("{error}; allowed: ADDR:PORT X Y Z [W X Y Z]");
             ExitCode::from(2)
         }
     }
@@ -32,10 +35,16 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
-    let [address, x, y, z] = &arguments[..] else {
-        return Err(format!("{} arguments", arguments.len()).into());
+    let Some((address, numbers)) = arguments.split_first() else {
+        return Err("no arguments".into());
     };
-    let middle: [f64; 3] = [x.parse()?, y.parse()?, z.parse()?];
+    let numbers = numbers.iter().map(|number| number.parse());
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    let (point, frame) = match numbers[..] {
+        [x, y, z] => ([x, y, z], None),
+        [x, y, z, qw, qx, qy, qz] => ([x, y, z], Some([qw, qx, qy, qz])),
+        _ => return Err(format!("{} numbers", numbers.len()).into()),
+    };
     let socket = UdpSocket::bind("0.0.0.0:0")?;
     socket.connect(address)?;
     let begin = Instant::now();
@@ -49,20 +58,35 @@ fn run() -> Result<(), Box<dyn std::error::Error>> {
         let ddb = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (START_S * START_S);
         let omega = TAU / PERIOD_S;
         let (sin, cos) = (omega * t).sin_cos();
-        let position = RADIUS_M * b * sin;
-        let velocity = RADIUS_M * (db * sin + b * omega * cos);
-        let acceleration =
-            RADIUS_M * (ddb * sin + 2.0 * db * omega * cos - b * omega * omega * sin);
-        let text = format!(
-            "{} {} {}, 0 {velocity} 0, 0 {acceleration} 0",
-            middle[0],
-            middle[1] + position,
-            middle[2]
-        );
+        let way = b * sin;
+        let rate = db * sin + b * omega * cos;
+        let curvature = ddb * sin + 2.0 * db * omega * cos - b * omega * omega * sin;
+        let motion = [way, rate, curvature];
+        let mut text = position(point, motion);
+        if let Some(frame) = frame {
+            // The next level.
+            text = text + ", " + &orientation(frame, motion);
+        }
         // Nobody listening yet is no error.
         let _ = socket.send(text.as_bytes());
         next += STEP;
         std::thread::sleep(next.saturating_duration_since(Instant::now()));
     }
     Ok(())
+}
+
+/// Nine numbers: x y z, velocity, acceleration.
+fn position([x, y, z]: [f64; 3], [way, rate, curvature]: [f64; 3]) -> String {
+    let [y, dy, ddy] = [y + RADIUS_M * way, RADIUS_M * rate, RADIUS_M * curvature];
+    format!("{x} {y} {z}, 0 {dy} 0, 0 {ddy} 0")
+}
+
+/// Ten numbers: w x y z, angular velocity, angular acceleration.
+fn orientation([w, x, y, z]: [f64; 4], [way, rate, curvature]: [f64; 3]) -> String {
+    let [angle, speed, acceleration] = [way, rate, curvature].map(|part| ANGLE_RAD * part);
+    // (cos, 0, 0, sin) of half the angle times the quaternion in the middle.
+    let (sin, cos) = (0.5 * angle).sin_cos();
+    let [w, z] = [cos * w - sin * z, cos * z + sin * w];
+    let [x, y] = [cos * x - sin * y, cos * y + sin * x];
+    format!("{w} {x} {y} {z}, 0 0 {speed}, 0 0 {acceleration}")
 }

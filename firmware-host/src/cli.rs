@@ -12,9 +12,8 @@ use std::time::Duration;
 use bridge::guide::ReferenceSource;
 use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
 use clap::{Args, Parser, Subcommand};
-use controller_core::controller::Controller;
 use controller_core::joint::JointVector;
-use controller_core::model::ArmModel;
+use controller_core::{Controller, Reference, TaskSet};
 use hil_sim::cli::usage;
 use hil_sim::cli::values::{address, dead_cycles, number, peer, processor};
 use hil_sim::invalid::{Invalid, in_range, positive};
@@ -88,7 +87,9 @@ struct RunOptions {
     /// at most 360
     #[arg(long, value_parser = number, allow_negative_numbers = true, value_name = "DEG")]
     require_start: Option<f64>,
-    /// Take references from UDP datagrams at this address instead of the scenario
+    /// Take references from UDP datagrams at this address instead of the scenario: text, for
+    /// each level in priority order x y z, velocity, acceleration (9 numbers; m, s), or of an
+    /// orientation w x y z, angular velocity, angular acceleration (10 numbers; rad, s)
     #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
     /// Hold when no reference has come for so many ms, above 0, at most 10000
@@ -149,14 +150,14 @@ enum Source {
 }
 
 impl ReferenceSource for Source {
-    fn start(&mut self, origin: &controller_core::measurement::Reference<f64>) {
+    fn start(&mut self, origin: &Reference<f64>) {
         match self {
             Self::Scenario(source) => source.start(origin),
             Self::Stream(source) => source.start(origin),
         }
     }
 
-    fn sample(&mut self, t_s: f64) -> Option<controller_core::measurement::Reference<f64>> {
+    fn sample(&mut self, t_s: f64) -> Option<Reference<f64>> {
         match self {
             Self::Scenario(source) => source.sample(t_s),
             Self::Stream(source) => source.sample(t_s),
@@ -170,7 +171,8 @@ impl RunOptions {
         let config = self.config(&scenario)?;
         let required = self.required_start(&scenario)?;
         let wait = Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?);
-        let mut source = self.source(&scenario)?;
+        let tasks = config.controller.tasks;
+        let mut source = self.source(&scenario, &tasks)?;
         let socket = UdpSocket::bind(self.listen).map_err(|error| {
             let allowed = format!("an address of this PC and a free port ({error})");
             Invalid::new("--listen", self.listen, allowed)
@@ -195,6 +197,7 @@ impl RunOptions {
             wait,
             silence: Duration::from_secs(2),
             stop: &stop,
+            tasks,
         };
         let mut flight = Flight::new();
         let mut teller = Teller::new();
@@ -311,8 +314,8 @@ impl RunOptions {
             None => scenario.duration_s,
         };
         let mut config = scenario.session_config(self.dead_cycles, duration_s)?;
-        config.controller.null_space.stiffness *=
-            NullStiffness::from_name(&self.null_stiffness)?.factor();
+        let factor = NullStiffness::from_name(&self.null_stiffness)?.factor();
+        config.controller.null_space = config.controller.null_space.stiffened(factor);
         config.robot_adds = match self.robot_adds.as_str() {
             "gravity" => RobotAdds::Gravity,
             "gravity-coriolis" => RobotAdds::GravityAndCoriolis,
@@ -323,18 +326,17 @@ impl RunOptions {
         };
         config.dry = self.dry;
         // What the robot's cycle will be is not known yet; all else is checked now.
-        let model: &ArmModel<f64> = &config.model;
-        Controller::new(model, &config.controller)
+        Controller::<f64>::new(&config.arm, &config.controller)
             .map_err(|error| Invalid::line(error).within(&scenario.name))?;
         Ok(config)
     }
 
-    fn source(&self, scenario: &Scenario) -> Result<Source, Invalid> {
+    fn source(&self, scenario: &Scenario, tasks: &TaskSet) -> Result<Source, Invalid> {
         let timeout = positive("--reference-timeout-ms", self.reference_timeout_ms, 1e4)?;
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        Stream::listen(address, Duration::from_secs_f64(timeout / 1e3))
+        Stream::listen(address, tasks, Duration::from_secs_f64(timeout / 1e3))
             .map(Source::Stream)
             .map_err(|error| {
                 let allowed = format!("an address of this PC and a free port ({error})");

@@ -115,6 +115,6 @@ pub fn row(cycle: &CycleReport) -> String {
         }
     }
     let status = step.map(|step| step.status).unwrap_or_default();
-    let fault = status.fault.map_or(0, |fault| fault.kind as u8);
+    let fault = status.fault.map_or(0, |fault| fault.kind.number());
     line + &format!(",{fault},{},{}\n", status.saturated.0, status.rank.0)
 }

@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, CycleReport, Outcome, Phase, Session};
 use controller_core::joint::Vector3;
-use controller_core::orientation;
-use controller_core::task::{Axes, MAX_LEVELS, TaskKind};
+use controller_core::ranges::MAX_LEVELS;
+use controller_core::task::orientation;
+use controller_core::{Axes, Target, TaskSet};
 
 use crate::realtime::Realtime;
 use crate::recorder::Recorder;
@@ -37,6 +38,8 @@ pub struct Link<'a> {
     pub silence: Duration,
     /// Set from outside: come to rest and end.
     pub stop: &'a AtomicBool,
+    /// The tasks of the session, for the figures of its levels.
+    pub tasks: TaskSet,
 }
 
 /// What a loop has counted.
@@ -108,7 +111,7 @@ pub fn converse(
                         counts.compute.add(computed);
                         counts.latency.add(latency);
                         if let Some(cycle) = session.last() {
-                            counts.add(session, cycle);
+                            counts.add(session, cycle, &link.tasks);
                             if let Some(recorder) = &mut recorder {
                                 recorder.push(cycle);
                             }
@@ -160,7 +163,7 @@ impl Counts {
         *self.link.rejected.entry(reason.to_string()).or_default() += 1;
     }
 
-    fn add(&mut self, session: &Session, cycle: &CycleReport) {
+    fn add(&mut self, session: &Session, cycle: &CycleReport, tasks: &TaskSet) {
         self.answered += 1;
         self.link.lost += u64::from(cycle.lost);
         for (phase, count) in PHASES.iter().zip(&mut self.phases) {
@@ -170,17 +173,13 @@ impl Counts {
         let Some(controller) = session.controller().filter(|_| moving) else {
             return;
         };
-        let actual = controller.rest(&cycle.joints.q);
-        let levels = controller.tasks().iter().zip(&mut self.tracking);
-        let references = session.reference().tasks.iter().zip(&actual.tasks);
-        for ((task, tracking), (wanted, actual)) in levels.zip(references) {
-            let error = match task.kind {
-                TaskKind::Position => wanted.x - actual.x,
-                TaskKind::Orientation => {
-                    orientation::error(&wanted.orientation, &actual.orientation)
-                }
-            };
-            tracking.add(norm(task.axes, &error));
+        let actual = controller.rest_reference(&cycle.joints.q);
+        let levels = tasks.tasks().iter().zip(&mut self.tracking);
+        let targets = session.reference().targets().iter().zip(actual.targets());
+        for ((task, tracking), (wanted, actual)) in levels.zip(targets) {
+            if let Some(error) = deviation(wanted, actual) {
+                tracking.add(norm(task.axes, &error));
+            }
         }
     }
 
@@ -219,8 +218,20 @@ impl Counts {
     }
 }
 
+/// From where a level is to where it should be: \[m\], or the chord of an orientation;
+/// none where nothing is wanted.
+fn deviation(wanted: &Target<f64>, actual: &Target<f64>) -> Option<Vector3<f64>> {
+    match (wanted, actual) {
+        (Target::Position { x: wanted, .. }, Target::Position { x, .. }) => Some(wanted - x),
+        (Target::Orientation { q: wanted, .. }, Target::Orientation { q, .. }) => {
+            Some(orientation::chord(wanted, q))
+        }
+        _ => None,
+    }
+}
+
 fn norm(axes: Axes, error: &Vector3<f64>) -> f64 {
-    let controlled = error.iter().zip(axes.xyz).filter(|(_, on)| *on);
+    let controlled = error.iter().zip(axes.flags()).filter(|(_, on)| *on);
     controlled
         .map(|(value, _)| value * value)
         .sum::<f64>()

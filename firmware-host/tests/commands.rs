@@ -213,3 +213,17 @@ fn help_and_version_are_no_errors() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty());
     }
 }
+
+/// What a planner must send is said where the option is.
+#[test]
+fn help_says_what_a_reference_is() {
+    let output = firmware_host(Path::new("."), &["run", "--help"]);
+    let text = String::from_utf8(output.stdout).expect("text");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "x y z, velocity, acceleration (9 numbers",
+        "w x y z, angular velocity, angular acceleration (10 numbers",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+}

@@ -73,12 +73,17 @@ fn the_loop_takes_no_memory_after_the_start() {
     });
 
     let stop = AtomicBool::new(false);
+    let tasks = scenario
+        .controller_config(0)
+        .expect("a good scenario")
+        .tasks;
     let mut link = Link {
         socket,
         peer: None,
         wait: Duration::from_secs(5),
         silence: Duration::from_millis(300),
         stop: &stop,
+        tasks,
     };
     let (mut session, mut source) = (session(&scenario), ScenarioSource::new(&scenario));
     let mut region = Region::new(MEMORY);

@@ -76,15 +76,17 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
         (trace.finish(), link)
     });
     let stop = AtomicBool::new(false);
+    let config = scenario.session_config(0, scenario.duration_s);
+    let config = config.expect("a good scenario");
     let mut link = Link {
         socket,
         peer: None,
         wait: Duration::from_secs(20),
         silence: Duration::from_secs(2),
         stop: &stop,
+        tasks: config.controller.tasks,
     };
-    let config = scenario.session_config(0, scenario.duration_s);
-    let mut session = Session::new(config.expect("a good scenario"));
+    let mut session = Session::new(config);
     let mut source = ScenarioSource::new(scenario);
     let counts = converse(&mut link, &mut session, &mut source, None, |_, _| {});
     let names = ["flange".to_string()];
