@@ -72,8 +72,8 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
         }
     }
 
-    /// A cycle without a measurement: the drives go off, the observer starts anew with
-    /// the next one.
+    /// A cycle without a measurement: the drives go off, the observer takes the momentum
+    /// anew with the next one.
     pub fn blind(&mut self) {
         self.state.resume_after_gap();
         self.state.set_applied_torque(&zeros());

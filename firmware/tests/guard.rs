@@ -1,7 +1,7 @@
 //! Emergency stop, drive enable and heartbeat on pins that check every call.
 
-use controller_core::Measurement;
 use controller_core::joint::JointVector;
+use controller_core::{Measurement, Reference};
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
 use firmware::guard::{Cause, Guard};
@@ -187,4 +187,45 @@ fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
     stop.done();
     drives.done();
     heartbeat.done();
+}
+
+/// What a board without a planner sends: the arm sinks while the drives are off, and is
+/// held where it is when they are asked for, not where the first measurement was.
+#[test]
+fn levels_hold_where_the_drives_are_asked_for() {
+    let job = Job::<f64>::new(JobKind::Case1).expect("a valid job");
+    let at = |q| Measurement {
+        q,
+        dq: JointVector::zeros(),
+        interval_s: CYCLE_S,
+    };
+    let first = job.origin.posture;
+    let sunk = first + JointVector::repeat(0.1);
+    let asked = |before: usize, reference: &mut Reference<f64>| {
+        let off = vec![LOW; before];
+        let beats = (1..=before).map(|cycle| if cycle % 2 == 0 { LOW } else { HIGH });
+        let next = if before % 2 == 0 { HIGH } else { LOW };
+        let guard = Guard::new(
+            input(&vec![HIGH; before + 1]),
+            output(&[&[LOW], &off[..], &[HIGH, LOW]].concat()),
+            output(&[&[LOW], &beats.collect::<Vec<_>>()[..], &[next, LOW]].concat()),
+        );
+        let mut machine = Machine::new(job.controller.clone(), guard);
+        for _ in 0..before {
+            let waiting = machine.cycle(&at(first), reference);
+            assert_eq!(waiting.stopped, Some(Cause::NotEnabled));
+        }
+        reference.posture = sunk;
+        machine.enable();
+        let output = machine.cycle(&at(sunk), reference);
+        assert_eq!(output.stopped, None);
+        let (mut stop, mut drives, mut heartbeat) = machine.release();
+        stop.done();
+        drives.done();
+        heartbeat.done();
+        output.torque
+    };
+    let levels = job.controller.level_count();
+    let held = asked(3, &mut Reference::hold(levels, JointVector::zeros()));
+    assert_eq!(held, asked(0, &mut job.controller.rest_reference(&sunk)));
 }

@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use controller_core::joint::{JointState, zeros};
-use controller_core::measurement::{Measurement, Reference};
+use controller_core::{Measurement, Reference};
 use cortex_m::peripheral::DWT;
 use embedded_hal::digital::{InputPin, OutputPin};
 use firmware::machine::Machine;
@@ -24,7 +24,8 @@ pub struct Loop<J, E, D, H, S> {
     /// High while the operator asks for the drives.
     start: S,
     asked: bool,
-    /// Where the arm was when the drives were asked for: there it is held.
+    /// Every level holds where it is when the drives are asked for, and the posture is
+    /// the one of that moment. Before it no torque is sent.
     hold: Reference<f64>,
     /// Processor cycle of the last measurement.
     last: Option<u32>,
@@ -43,11 +44,11 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
         cycle_s: f64,
     ) -> Self {
         Self {
+            hold: Reference::hold(machine.controller().level_count(), zeros()),
             machine,
             joints,
             start,
             asked: false,
-            hold: Reference::new(),
             last: None,
             clock_hz,
             cycle_s,
@@ -89,10 +90,9 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
     /// Asks for the drives where the operator begins to: the arm stays where it is.
     fn listen(&mut self, joints: &JointState<f64>) {
         let asks = matches!(self.start.is_high(), Ok(true));
-        if asks && !self.asked || self.hold.tasks.is_empty() {
-            self.hold = self.machine.controller().rest(&joints.q);
-        }
         if asks && !self.asked {
+            self.hold.posture = joints.q;
+            // Forgets also where levels have held so far.
             self.machine.enable();
         }
         self.asked = asks;

@@ -8,7 +8,7 @@ use controller_core::joint::{JointState, JointVector};
 pub trait Joints {
     /// Positions \[rad\] and speeds \[rad/s\] at this instant; none where the bus has
     /// brought nothing new, which turns the drives off. Where encoders give no speed,
-    /// `controller_core::velocity` estimates it.
+    /// `controller_core::cycle::velocity` estimates it.
     fn measure(&mut self) -> Option<JointState<f64>>;
 
     /// Torque \[Nm\] to apply until the next cycle, within the arm's limits; zero

@@ -26,7 +26,7 @@ mod pins;
 
 use core::cell::RefCell;
 
-use controller_core::controller::Controller;
+use controller_core::Controller;
 use cortex_m::interrupt::Mutex;
 use cortex_m::peripheral::NVIC;
 use cortex_m_rt::entry;
