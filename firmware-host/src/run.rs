@@ -218,13 +218,13 @@ impl Counts {
     }
 }
 
-/// From where a level is to where it should be: \[m\], or the chord of an orientation;
-/// none where nothing is wanted.
+/// From where a level is to where it should be: \[m\], or the rotation vector \[rad\] of
+/// an orientation; none where the two do not compare.
 fn deviation(wanted: &Target<f64>, actual: &Target<f64>) -> Option<Vector3<f64>> {
     match (wanted, actual) {
         (Target::Position { x: wanted, .. }, Target::Position { x, .. }) => Some(wanted - x),
         (Target::Orientation { q: wanted, .. }, Target::Orientation { q, .. }) => {
-            Some(orientation::chord(wanted, q))
+            Some(orientation::rotation_vector(&orientation::chord(wanted, q)))
         }
         _ => None,
     }

@@ -45,8 +45,7 @@ pub struct Summary {
 pub struct LevelSummary {
     /// Point and axes.
     pub name: String,
-    /// rms \[mm\], or \[mrad\] of an orientation, where the chord 2 sin(theta / 2) stands
-    /// for the angle; none if there was no motion.
+    /// rms \[mm\], or \[mrad\] of an orientation; none if there was no motion.
     pub rms: Option<f64>,
     /// Largest, likewise.
     pub max: Option<f64>,
