@@ -65,7 +65,7 @@ static Eigen::Map<const Eigen::Matrix<double, R, C>> take(const double*& in) {
     return Eigen::Map<const Eigen::Matrix<double, R, C>>(start);
 }
 
-/// Rows and wanted acceleration of one level, from row `at` on.
+/// Rows and commanded acceleration of one level, from row `at` on.
 template <int R>
 static void level(int at, pin::FrameIndex frame, const Joints& dq, const double*& in, Rows& j, Rows& jdot, Column& b) {
     const auto x = take<R>(in), dx = take<R>(in), ddx = take<R>(in);

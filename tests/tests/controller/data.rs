@@ -4,7 +4,7 @@
 use controller_core::cycle::stages::StageName;
 use controller_core::cycle::{Data, Input};
 use controller_core::fault::FaultKind;
-use controller_core::joint::{JointState, JointVector};
+use controller_core::joint::{JointState, JointVector, zeros};
 use controller_core::law::control::TorqueDemand;
 use controller_core::law::null_space::{NullDamping, Posture};
 use controller_core::real::Real;
@@ -197,15 +197,14 @@ fn run<T: Real>(controller: &Controller<T>, state: &mut State<T>, seed: u64) -> 
 }
 
 /// From seven rows to one and to every number between: after a reset, which clears
-/// what is remembered, a used state gives the bits of a fresh one, so no row of the
-/// other controller is left in it. The other one ended in a torque that is not finite.
+/// what is remembered, a used state gives the bits of a fresh one, so no row and no flag
+/// of the other controller is left in it. The other one ended with a stretched arm, or
+/// in a torque that is not finite.
 fn a_used_state_is_a_fresh_one<T: Real>() {
     let controllers: Vec<_> = configurations().iter().map(controller::<T>).collect();
+    let mut flagged = 0;
     for (first, before) in controllers.iter().enumerate() {
         for (second, after) in controllers.iter().enumerate() {
-            if first == second {
-                continue;
-            }
             let mut used = State::new();
             let steps = run(before, &mut used, 70);
             assert_eq!(steps[3].status.fault, None);
@@ -228,6 +227,15 @@ fn a_used_state_is_a_fresh_one<T: Real>() {
             let step = before.step(&mut poisoned, &measurement, &reference);
             let fault = step.status.fault.expect("not finite");
             assert_eq!(fault.kind, FaultKind::NonFiniteTorque);
+            let stretched = Measurement {
+                q: zeros(),
+                dq: zeros(),
+                ..measurement
+            };
+            let hold = Reference::hold(before.level_count(), stretched.q);
+            let step = before.step(&mut used, &stretched, &hold);
+            assert_eq!(step.status.fault, None);
+            flagged += u32::from(step.status.rank.any());
 
             let mut fresh = State::new();
             let expected = run(after, &mut fresh, 71);
@@ -252,6 +260,7 @@ fn a_used_state_is_a_fresh_one<T: Real>() {
             }
         }
     }
+    assert!(flagged > 50, "{flagged}");
 }
 
 #[test]
