@@ -14,12 +14,12 @@ use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
 use clap::{Args, Parser, Subcommand};
 use controller_core::joint::JointVector;
 use controller_core::{Controller, Reference, TaskSet};
-use hil_sim::cli::usage;
-use hil_sim::cli::values::{address, dead_cycles, number, peer, processor};
-use hil_sim::invalid::{Invalid, in_range, positive};
-use hil_sim::names::{Named, NullStiffness};
-use hil_sim::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
-use hil_sim::terminal::{print, tell};
+use cell::arguments::usage;
+use cell::arguments::values::{address, dead_cycles, number, peer, processor};
+use cell::invalid::{Invalid, in_range, positive};
+use cell::names::{Named, NullStiffness};
+use cell::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
+use cell::terminal::{print, tell};
 
 use crate::doctor;
 use crate::realtime::Realtime;

@@ -30,8 +30,8 @@ use controller_core::ranges::{MAX_LEVELS, QUATERNION_NORMS};
 use controller_core::task::Tracked;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Reference, Target, Task, TaskSet};
-use hil_sim::invalid::in_range;
-use hil_sim::terminal::tell;
+use cell::invalid::in_range;
+use cell::terminal::tell;
 
 /// References that wait for the loop.
 const QUEUE: usize = 64;

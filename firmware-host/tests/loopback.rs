@@ -10,9 +10,10 @@ use firmware_host::realtime::Realtime;
 use firmware_host::run::{Link, converse};
 use firmware_host::summary::Summary;
 use hil_sim::loopback::{self, BridgeClient};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
+use cell::names::PlantKind;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{Scenario, ScenarioSource};
+use cell::scenario::{Scenario, ScenarioSource};
 use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 

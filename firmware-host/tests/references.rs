@@ -18,9 +18,10 @@ use firmware_host::realtime::Realtime;
 use firmware_host::recorder;
 use firmware_host::run::{Link, converse};
 use firmware_host::stream::{Setpoint, Stream};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
+use cell::names::PlantKind;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{ReferenceSpec, Scenario, TaskSpec};
+use cell::scenario::{ReferenceSpec, Scenario, TaskSpec};
 
 /// Longer than any of these runs.
 const NEVER: Duration = Duration::from_secs(600);

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 
 use controller_core::joint::JointState;
 use controller_core::{Measurement, State};
-use hil_sim::plant::{Plant, PlantKind, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::plant::{Plant, PlantOptions};
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 
 use crate::job::{CYCLE_S, Job, JobKind};
 use crate::log::{Entry, Header, Number};

@@ -3,7 +3,7 @@
 use controller_core::Target;
 use controller_core::joint::Vector3;
 use firmware::job::{CYCLE_S, Job, JobKind, config};
-use hil_sim::scenario::Scenario;
+use cell::scenario::Scenario;
 
 type Parts = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
@@ -23,7 +23,7 @@ fn jobs_are_the_scenarios_of_their_name() {
         assert_eq!(scenario.cycle_s(), CYCLE_S);
         let job = Job::<f64>::new(kind).expect("a valid job");
         assert_eq!(job.origin.posture, scenario.start());
-        let origins = scenario.origins_at(&scenario.start());
+        let origins = origins(&scenario, &scenario.start());
         for cycle in (0..10_000).step_by(37) {
             let t_s = f64::from(cycle) * CYCLE_S;
             let wanted = scenario.reference(&origins, &scenario.start(), t_s);

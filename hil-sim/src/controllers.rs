@@ -10,7 +10,7 @@ use controller_core::law::motion::MotionSplit;
 use controller_core::linalg::Cholesky;
 use controller_core::ranges::MAX_ROWS;
 
-use crate::names::Named;
+use cell::names::Named;
 
 /// A torque law by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

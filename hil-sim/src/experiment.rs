@@ -10,16 +10,18 @@ use controller_core::joint::{JointState, JointVector};
 use controller_core::ranges::SPEED_FACTOR;
 use controller_core::{Controller, Fault, Measurement, State};
 
+use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, Decision, LawGains};
-use crate::invalid::Invalid;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::{FaultCounts, Metrics};
-use crate::names::{MeasurementKind, Named, NullStiffness};
-use crate::plant::{Plant, PlantKind, PlantModel, PlantOptions};
+use crate::plant::{Plant, PlantModel, PlantOptions};
 use crate::robot::{Robot, RobotOptions, RobotSetup};
-use crate::scenario::Scenario;
 use crate::summary::{self, Conditions, Summary, Verdict};
+use cell::invalid::Invalid;
+use cell::names::PlantKind;
+use cell::names::{MeasurementKind, Named, NullStiffness};
+use cell::scenario::Scenario;
 
 pub use level::LevelInstant;
 pub(crate) use level::{Places, angular_velocity};
@@ -170,12 +172,12 @@ impl Experiment {
         let scenario = &self.scenario;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
         let mut contacts = if self.contacts {
-            scenario.contacts()
+            Contacts::of(scenario)
         } else {
             Contacts::none()
         };
         let places = Places::new(scenario);
-        let origins = scenario.origins_at(&scenario.start());
+        let origins = origins(scenario, &scenario.start());
         let gains = LawGains {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
             stiffness: controller.compliance().stiffness,

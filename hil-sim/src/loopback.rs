@@ -10,7 +10,7 @@ use bridge::session::{ANSWER_LEN, Outcome, Session, SessionConfig};
 use crate::experiment::Instant;
 use crate::link::{Expect, Fault, LockStep, Peer};
 use crate::robot::Robot;
-use crate::scenario::{Scenario, ScenarioSource};
+use cell::scenario::{Scenario, ScenarioSource};
 
 /// The bridge as a client in this process.
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use controller_core::joint::DOF;
 
 use crate::experiment::Instant;
-use crate::scenario::{Scenario, TaskSpec};
+use cell::scenario::{Scenario, TaskSpec};
 
 /// Writes rows as they come.
 pub struct Trace<W: Write> {

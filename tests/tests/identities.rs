@@ -4,7 +4,7 @@
 use controller_core::arm::{LWR_IV, Link};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use hil_sim::plant::PlantModel;
-use hil_sim::scenario::{BUILT_IN, Scenario};
+use cell::scenario::{BUILT_IN, Scenario};
 use stratum_tests::random::States;
 use stratum_tests::{JOINTS, evaluate, lwr, relative, unit};
 

@@ -4,9 +4,10 @@
 use bridge::session::Phase;
 use hil_sim::link::Fault;
 use hil_sim::loopback::{self, BridgeClient};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
+use cell::names::PlantKind;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::Scenario;
+use cell::scenario::Scenario;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 

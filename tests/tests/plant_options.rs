@@ -8,8 +8,10 @@ use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::{Controller, Measurement, State, Target};
 use hil_sim::plant::elastic::JOINT_STIFFNESS;
 use hil_sim::plant::friction::COULOMB;
-use hil_sim::plant::{DEAD_CYCLES_MAX, Plant, PlantKind, PlantModel, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::plant::{Plant, PlantModel, PlantOptions};
+use cell::names::PlantKind;
+use controller_core::ranges::DEAD_CYCLES_MAX;
+use cell::scenario::Scenario;
 
 const CYCLE: f64 = 0.002;
 const START: [f64; DOF] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];
@@ -231,7 +233,7 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
     let config = config.expect("levels that make a set");
     let controller = Controller::new(scenario.arm(), &config).expect("a valid configuration");
     let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
-    let (origins, mut contacts) = (scenario.origins_at(&scenario.start()), scenario.contacts());
+    let (origins, mut contacts) = (origins(&scenario, &scenario.start()), scenario.contacts());
     let (arm, start) = (scenario.arm(), scenario.start());
     let mut state = State::new();
     let mut plant = Plant::with_options(kind, arm, start, cycle_s, seed, options);

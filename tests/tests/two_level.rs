@@ -3,9 +3,10 @@
 
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
-use hil_sim::names::{MeasurementKind, NullStiffness};
-use hil_sim::plant::{PlantKind, PlantOptions};
-use hil_sim::scenario::Scenario;
+use cell::names::{MeasurementKind, NullStiffness};
+use hil_sim::plant::PlantOptions;
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use hil_sim::summary::{Summary, Verdict};
 use hil_sim::trace::Trace;
 

@@ -4,12 +4,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::experiment::Instant;
-use crate::invalid::Invalid;
 use crate::output::{self, Draft};
 use crate::report::{self, Choices, Recording};
-use crate::scenario::Scenario;
 use crate::summary::Summary;
 use crate::trace::Trace;
+use cell::invalid::Invalid;
+use cell::scenario::Scenario;
 
 /// Files on their way: nothing is seen of them before [`Files::finish`].
 pub struct Files {

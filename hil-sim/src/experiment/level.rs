@@ -4,8 +4,9 @@ use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::task::orientation;
 use controller_core::{Axes, LinkPoint, Reference, Target};
 
+use crate::arm_points;
 use crate::plant::PlantModel;
-use crate::scenario::{self, Scenario, TaskSpec};
+use cell::scenario::{LevelSpec, Scenario, TaskSpec};
 
 /// One level at one instant, true values.
 #[derive(Clone, Debug, Default)]
@@ -36,7 +37,7 @@ pub(crate) struct Place {
 
 impl Places {
     pub fn new(scenario: &Scenario) -> Self {
-        let place = |level: &scenario::LevelSpec| Place {
+        let place = |level: &LevelSpec| Place {
             task: level.task,
             point: level.point.resolve(),
             axes: Axes::from_name(&level.axes).unwrap_or(Axes::XYZ),
@@ -75,7 +76,7 @@ impl Place {
             ..LevelInstant::default()
         };
         if self.task == TaskSpec::Orientation {
-            let actual = scenario::orientation(&truth.q, self.point.link.number());
+            let actual = arm_points::orientation(&truth.q, self.point.link.number());
             let desired = match target {
                 Target::Orientation { q, .. } => *q,
                 _ => actual,

@@ -1,9 +1,10 @@
 //! What the plant can imitate beyond the reference behaviour.
 
 use controller_core::joint::JointVector;
+use controller_core::ranges;
 
-/// Largest dead time, in cycles.
-pub const DEAD_CYCLES_MAX: usize = 8;
+/// Largest dead time, in cycles: that of the controller.
+const DEAD_CYCLES_MAX: usize = ranges::DEAD_CYCLES_MAX as usize;
 
 /// Effects that the reference plant leaves out. The default is the reference
 /// plant, to the last bit.
@@ -18,7 +19,7 @@ pub struct PlantOptions {
     /// Springs between motors and links ([`super::elastic`]).
     pub elasticity: bool,
     /// Cycles between a torque command and its effect, 0 to
-    /// [`DEAD_CYCLES_MAX`].
+    /// [`ranges::DEAD_CYCLES_MAX`].
     pub dead_cycles: usize,
     /// How many times as many integration steps as the reference; 0 counts as 1.
     /// Says how large the integration error is.

@@ -6,8 +6,8 @@ use super::plot::{Chart, LimitLine, Mark, Panel, Scale, Series, Stroke, Style};
 use super::svg::Svg;
 use super::ticks::plain;
 use super::{Run, scene};
-use crate::metrics::Metric;
 use crate::summary::Verdict;
+use cell::scenario::Metric;
 
 /// Below this, a task acceleration is rounding \[m/s2\].
 const LEAK_FLOOR: f64 = 1e-18;

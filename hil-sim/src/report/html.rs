@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::svg::escape;
 use super::ticks::plain;
 use super::{Run, diagram, figures, palette, tables};
-use crate::scenario::Scenario;
 use crate::summary::{Summary, Verdict};
+use cell::scenario::Scenario;
 
 const PAGE_CSS: &str = include_str!("page.css");
 
@@ -204,7 +204,7 @@ fn command(run: &Run<'_>) -> String {
         summary.controller,
         summary.seed
     );
-    let stiffness = crate::names::Named::name(run.choices.null_stiffness);
+    let stiffness = cell::names::Named::name(run.choices.null_stiffness);
     if stiffness != "normal" {
         let _ = write!(line, " --null-stiffness {stiffness}");
     }
@@ -231,8 +231,9 @@ mod tests {
     use super::*;
     use crate::controllers::ControllerKind;
     use crate::experiment::Experiment;
-    use crate::names::{MeasurementKind, NullStiffness};
-    use crate::plant::{PlantKind, PlantOptions};
+    use crate::plant::PlantOptions;
+    use cell::names::PlantKind;
+    use cell::names::{MeasurementKind, NullStiffness};
     use controller_core::joint::JointVector;
 
     /// A short real summary, and a recording with what `value` gives.

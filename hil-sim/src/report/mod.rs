@@ -26,12 +26,12 @@ pub use html::run_report;
 pub use recording::Recording;
 pub use scene::snapshots;
 
-use crate::contact::{Hand, Interval, Push};
 use crate::experiment::Experiment;
-use crate::names::{MeasurementKind, NullStiffness};
 use crate::plant::PlantOptions;
-use crate::scenario::Scenario;
 use crate::summary::{CLIENT, Summary, Verdict};
+use cell::names::{MeasurementKind, NullStiffness};
+use cell::scenario::Scenario;
+use cell::scenario::{Hand, Interval, Push};
 
 /// A finished run, as the figures and the report need it.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,7 @@ use controller_core::joint::{DOF, JointState, JointVector};
 
 use crate::experiment::{Instant, LevelInstant};
 use crate::plant::PlantModel;
-use crate::scenario::Scenario;
+use cell::scenario::Scenario;
 
 /// Most rows that are kept.
 pub const CAPACITY: usize = 1 << 15;
@@ -309,7 +309,7 @@ fn block_len(cycles: usize) -> usize {
 /// Start, and before each contact's force ramps down; evenly spread without.
 fn snapshot_times(scenario: &Scenario, contacts: bool) -> Vec<f64> {
     let mut times = vec![0.0];
-    let intervals = scenario.contacts().intervals();
+    let intervals = scenario.intervals();
     if contacts && !intervals.is_empty() {
         times.extend(intervals.iter().map(|c| c.to_s - c.ramp_s));
     } else {

@@ -5,10 +5,11 @@ use std::fmt::Write;
 use super::svg::escape;
 use super::ticks::{figure, plain};
 use super::{Run, letter};
-use crate::metrics::{LevelFigures, Metric};
-use crate::names::Named;
+use crate::metrics::LevelFigures;
 use crate::robot::LinkFigures;
-use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+use cell::names::Named;
+use cell::scenario::Metric;
+use cell::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
 
 /// A table under construction: rows of cells that are HTML already.
 pub(crate) struct Table {

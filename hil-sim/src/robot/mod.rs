@@ -42,13 +42,16 @@ pub use options::{Krl, RatingOptions, RobotAdds, RobotOptions, Scheme};
 pub use order::Order;
 pub use rating::{Quality, Rating, Statistics};
 
-use crate::contact::{Contacts, Push};
+use crate::arm_points::origins;
+use crate::contact::{Contacts, push_torque};
 use crate::experiment::{Instant, LevelInstant, Places, unsafe_motion};
 use crate::metrics::{FaultCounts, Metrics};
-use crate::names::Named;
-use crate::plant::{DeadTime, Plant, PlantKind, PlantOptions};
-use crate::scenario::{PointSpec, Scenario};
+use crate::plant::{DeadTime, Plant, PlantOptions};
 use crate::summary::{self, Summary, Verdict};
+use cell::names::Named;
+use cell::names::PlantKind;
+use cell::scenario::Push;
+use cell::scenario::{PointSpec, Scenario};
 use counters::Counters;
 use inbox::Inbox;
 use krc::{Added, Now};
@@ -181,7 +184,7 @@ impl Robot {
         };
         let speed_limit = limit(|link| link.speed_limit);
         let contacts = if setup.contacts {
-            scenario.contacts()
+            Contacts::of(scenario)
         } else {
             Contacts::none()
         };
@@ -244,7 +247,7 @@ impl Robot {
         self.start = Some(Start {
             cycle: self.cycle + settle,
             posture,
-            origins: self.setup.scenario.origins_at(&posture),
+            origins: origins(&self.setup.scenario, &posture),
         });
     }
 
@@ -376,9 +379,9 @@ impl Robot {
             .advance_with(scenario_t, torque, impedance, |t, model, state| {
                 let (scripted, _) = contacts.joint_torque(t, model, state);
                 let at = robot_t + (t - scenario_t);
-                typed
-                    .iter()
-                    .fold(scripted, |sum, push| sum + push.torque(at, model, state))
+                typed.iter().fold(scripted, |sum, push| {
+                    sum + push_torque(push, at, model, state)
+                })
             });
         self.typed.retain(|push| push.to_s > robot_t);
         self.cycle += 1;
@@ -397,7 +400,7 @@ impl Robot {
         let (scripted, hand_force_n) = self.contacts.joint_torque(t_s, self.plant.model(), &truth);
         let model = self.plant.model();
         let contact = self.typed.iter().fold(scripted, |sum, push| {
-            sum + push.torque(robot_t, model, &truth)
+            sum + push_torque(push, robot_t, model, &truth)
         });
         let seen = Seen {
             truth,

@@ -1,7 +1,7 @@
 //! How the robot controller behaves where the protocol leaves it open. Every
 //! number here is an assumption of this simulation, not a fact about a product.
 
-use crate::names::Named;
+use cell::names::Named;
 
 /// Who decides that the answers move the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use super::options::Scheme;
 use super::order::wire;
 use super::rating::Quality;
 use super::{FaultCounts, Named, Robot, Seen, Summary, Verdict, summary};
-use crate::names::MeasurementKind;
 use crate::summary::Conditions;
+use cell::names::MeasurementKind;
 
 /// Power bits with the drives on: one per joint.
 const POWER: u16 = 0x7F;

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
-use crate::invalid::{Invalid, positive};
 use crate::robot::Robot;
-use crate::scenario::PointSpec;
-use crate::terminal::tell;
+use cell::invalid::{Invalid, positive};
+use cell::scenario::PointSpec;
+use cell::terminal::tell;
 
 /// One line for a line that means nothing.
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \

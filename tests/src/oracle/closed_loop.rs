@@ -9,7 +9,8 @@ use controller_core::task::trajectory::{Plane, Trajectory};
 use controller_core::{
     Controller, ControllerConfig, LinkPoint, Measurement, Reference, State, Step, Target, Task,
 };
-use hil_sim::plant::{Plant, PlantKind, PlantModel};
+use hil_sim::plant::{Plant, PlantModel};
+use cell::names::PlantKind;
 
 /// The posture \[deg\] from which the two-level circle starts.
 pub const TWO_LEVEL_START: [f64; 7] = [0.0, 35.0, 0.0, -80.0, 20.0, 60.0, 0.0];

@@ -2,9 +2,12 @@
 //! null-space compliance, contacts and acceptance limits. The built-in scenarios are TOML files
 //! like any other.
 
-mod geometry;
+mod contact;
+mod hand;
 mod locate;
+mod metric;
 mod point;
+mod push;
 mod reference;
 mod session;
 
@@ -12,20 +15,20 @@ use std::path::Path;
 
 use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::gain::diagonal;
-use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::ranges::{MAX_LEVELS, MAX_ROWS};
+use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS};
 use controller_core::{Axes, ControllerConfig, Reference, Target, Task, TaskGains, TaskSet};
 use serde::{Deserialize, Deserializer};
 
-use crate::contact::{Contacts, Hand, Push};
 use crate::invalid::{Invalid, in_range, positive};
-use crate::metrics::Metric;
-use crate::names::{MeasurementKind, Named};
-use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantModel};
+use crate::names::{MeasurementKind, Named, PlantKind};
 
-pub use geometry::orientation;
+pub use contact::Interval;
+pub use hand::{Direction, Hand};
+pub use metric::{Metric, Unit};
 pub use point::PointSpec;
+pub use push::Push;
 pub use reference::ReferenceSpec;
 pub use session::ScenarioSource;
 
@@ -314,7 +317,7 @@ impl Scenario {
             PlantKind::from_name(&limit.plant).map_err(place)?;
             MeasurementKind::from_name(&limit.measurement).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
-            if limit.dead_cycles > DEAD_CYCLES_MAX {
+            if limit.dead_cycles > usize::from(DEAD_CYCLES_MAX) {
                 let allowed = format_args!("0 to {DEAD_CYCLES_MAX}");
                 return Err(place(Invalid::new(
                     "dead_cycles",
@@ -380,10 +383,13 @@ impl Scenario {
         })
     }
 
-    /// Pushes and hands, before the run.
+    /// When its contacts act: pushes, then hands.
     #[must_use]
-    pub fn contacts(&self) -> Contacts {
-        Contacts::new(&self.pushes, &self.hands)
+    pub fn intervals(&self) -> Vec<Interval> {
+        let pushes = self.pushes.iter().map(Push::interval);
+        pushes
+            .chain(self.hands.iter().map(Hand::interval))
+            .collect()
     }
 
     /// The reference at time `t_s`, from where the levels are at the start, with
@@ -402,17 +408,10 @@ impl Scenario {
         }
         reference
     }
-
-    /// Where the levels' points and frames are in the posture `q` \[rad\],
-    /// base-plate frame.
-    #[must_use]
-    pub fn origins_at(&self, q: &JointVector<f64>) -> Vec<Target<f64>> {
-        self.levels.iter().map(|level| level.rest_at(q)).collect()
-    }
 }
 
 /// Reads one number per joint, and says how many there are if not seven.
-pub(crate) fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
+pub fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
     let values = Vec::<f64>::deserialize(deserializer)?;
     let count = values.len();
     values.try_into().map_err(|_| {
@@ -472,24 +471,6 @@ impl LevelSpec {
         self.reference
             .validate()
             .map_err(|error| error.in_table("reference"))
-    }
-
-    /// At rest where the level's point or frame is in a posture \[rad\].
-    #[must_use]
-    pub fn rest_at(&self, q: &JointVector<f64>) -> Target<f64> {
-        let point = self.point.resolve();
-        let link = point.link.number();
-        match self.task {
-            TaskSpec::Position => {
-                let state = JointState {
-                    q: *q,
-                    dq: JointVector::zeros(),
-                };
-                let (x, _) = PlantModel::new(&LWR_IV).point(&state, link, &point.offset.into());
-                Target::position(x)
-            }
-            TaskSpec::Orientation => Target::orientation(geometry::orientation(q, link)),
-        }
     }
 
     /// The core's task. The level must be valid.
