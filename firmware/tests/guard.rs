@@ -203,12 +203,11 @@ fn levels_hold_where_the_drives_are_asked_for() {
     let sunk = first + JointVector::repeat(0.1);
     let asked = |before: usize, reference: &mut Reference<f64>| {
         let off = vec![LOW; before];
-        let beats = (1..=before).map(|cycle| if cycle % 2 == 0 { LOW } else { HIGH });
-        let next = if before % 2 == 0 { HIGH } else { LOW };
+        let beats: Vec<State> = [HIGH, LOW].into_iter().cycle().take(before + 1).collect();
         let guard = Guard::new(
             input(&vec![HIGH; before + 1]),
             output(&[&[LOW], &off[..], &[HIGH, LOW]].concat()),
-            output(&[&[LOW], &beats.collect::<Vec<_>>()[..], &[next, LOW]].concat()),
+            output(&[&[LOW], &beats[..], &[LOW]].concat()),
         );
         let mut machine = Machine::new(job.controller.clone(), guard);
         for _ in 0..before {

@@ -15,6 +15,7 @@ mod limits;
 mod lines;
 mod panic_free;
 mod placement;
+mod rooms;
 mod same_bytes;
 mod selftest;
 mod stack;
@@ -48,7 +49,11 @@ same-bytes BASE [NEW] [--ignore PART]...
                        scenarios, paper, explain of 200 random states. BASE and NEW are
                        executables or git revisions; NEW is the working tree unless
                        given. CSV columns and JSON paths with PART in their name may
-                       differ";
+                       differ
+
+rooms                  every crate's files in the layers of docs/rooms.txt, none using one
+                       above it, and none in a circle
+rooms --graph CRATE    which file uses what of which other file";
 
 /// What came out: a verdict, or why there is none.
 type Outcome = Result<bool, tools::Trouble>;
@@ -73,6 +78,13 @@ fn main() -> ExitCode {
         ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
         ["same-bytes", ref words @ ..] => match same_bytes::Comparison::parse(words) {
             Ok(comparison) => comparison.run(),
+            Err(wrong) => {
+                eprintln!("{wrong}");
+                return 2.into();
+            }
+        },
+        ["rooms", ref words @ ..] => match rooms::Rooms::parse(words) {
+            Ok(rooms) => rooms.run(),
             Err(wrong) => {
                 eprintln!("{wrong}");
                 return 2.into();
