@@ -11,15 +11,15 @@ use std::time::Duration;
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
-use clap::{Args, Parser, Subcommand};
-use controller_core::joint::JointVector;
-use controller_core::{Controller, Reference, TaskSet};
 use cell::arguments::usage;
 use cell::arguments::values::{address, dead_cycles, number, peer, processor};
 use cell::invalid::{Invalid, in_range, positive};
 use cell::names::{Named, NullStiffness};
 use cell::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
 use cell::terminal::{print, tell};
+use clap::{Args, Parser, Subcommand};
+use controller_core::joint::JointVector;
+use controller_core::{Controller, Reference, TaskSet};
 
 use crate::doctor;
 use crate::realtime::Realtime;

@@ -6,12 +6,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use cell::names::PlantKind;
+use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::recorder::Recorder;
 use firmware_host::run::{Link, converse};
 use hil_sim::plant::PlantOptions;
-use cell::names::PlantKind;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use cell::scenario::{Scenario, ScenarioSource};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]

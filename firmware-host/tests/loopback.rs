@@ -6,14 +6,14 @@ use std::thread;
 use std::time::Duration;
 
 use bridge::session::Session;
+use cell::names::PlantKind;
+use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::realtime::Realtime;
 use firmware_host::run::{Link, converse};
 use firmware_host::summary::Summary;
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
-use cell::names::PlantKind;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use cell::scenario::{Scenario, ScenarioSource};
 use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 

@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use cell::names::PlantKind;
+use cell::scenario::{ReferenceSpec, Scenario, TaskSpec};
 use controller_core::fault::FaultKind;
 use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
@@ -19,9 +21,7 @@ use firmware_host::recorder;
 use firmware_host::run::{Link, converse};
 use firmware_host::stream::{Setpoint, Stream};
 use hil_sim::plant::PlantOptions;
-use cell::names::PlantKind;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use cell::scenario::{ReferenceSpec, Scenario, TaskSpec};
 
 /// Longer than any of these runs.
 const NEVER: Duration = Duration::from_secs(600);

@@ -3,11 +3,12 @@
 
 use std::io::{self, Write};
 
-use controller_core::joint::JointState;
-use controller_core::{Measurement, State};
-use hil_sim::plant::{Plant, PlantOptions};
 use cell::names::PlantKind;
 use cell::scenario::Scenario;
+use controller_core::joint::JointState;
+use controller_core::{Measurement, State};
+use hil_sim::contact::Contacts;
+use hil_sim::plant::{Plant, PlantOptions};
 
 use crate::job::{CYCLE_S, Job, JobKind};
 use crate::log::{Entry, Header, Number};
@@ -22,7 +23,7 @@ const SEED: u64 = 1;
 pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) -> io::Result<()> {
     let job = Job::<T>::new(kind).map_err(io::Error::other)?;
     let scenario = Scenario::find(kind.name()).map_err(io::Error::other)?;
-    let mut contacts = scenario.contacts();
+    let mut contacts = Contacts::of(&scenario);
     let mut plant = Plant::with_options(
         PlantKind::Realistic,
         scenario.arm(),

@@ -1,9 +1,10 @@
 //! The constants of the jobs are the built-in scenarios.
 
+use cell::scenario::Scenario;
 use controller_core::Target;
 use controller_core::joint::Vector3;
 use firmware::job::{CYCLE_S, Job, JobKind, config};
-use cell::scenario::Scenario;
+use hil_sim::arm_points::origins;
 
 type Parts = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
 

@@ -3,7 +3,7 @@
 use cell::scenario::{LevelSpec, Scenario, TaskSpec};
 use controller_core::Target;
 use controller_core::arm::LWR_IV;
-use controller_core::joint::{JointState, JointVector, Matrix3};
+use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use controller_core::real::Real;
 
 use crate::plant::PlantModel;
@@ -53,4 +53,19 @@ fn rest_at(level: &LevelSpec, q: &JointVector<f64>) -> Target<f64> {
         }
         TaskSpec::Orientation => Target::orientation(orientation(q, link)),
     }
+}
+
+/// Angular velocity of a link \[rad/s\], from the velocities of its frame's origin
+/// and of the ends of its unit axes: w = sum of e_i x (de_i) / 2.
+#[must_use]
+pub fn angular_velocity(plant: &PlantModel, state: &JointState<f64>, link: usize) -> Vector3<f64> {
+    let (origin, origin_rate) = plant.point(state, link, &Vector3::zeros());
+    let mut sum = Vector3::zeros();
+    for axis in 0..3 {
+        let mut end = Vector3::zeros();
+        end[axis] = 1.0;
+        let (tip, tip_rate) = plant.point(state, link, &end);
+        sum += (tip - origin).cross(&(tip_rate - origin_rate));
+    }
+    sum / 2.0
 }

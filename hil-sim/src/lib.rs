@@ -20,6 +20,7 @@ pub mod paper;
 pub mod plant;
 pub mod report;
 pub mod robot;
+pub mod sample;
 pub mod serve;
 pub mod summary;
 pub mod trace;

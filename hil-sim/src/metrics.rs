@@ -5,7 +5,7 @@ use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
-use crate::experiment::Instant;
+use crate::sample::Sample;
 
 /// Root mean square of what was added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -230,7 +230,7 @@ impl Metrics {
     }
 
     /// Adds a cycle.
-    pub fn add(&mut self, sample: &Instant<'_>) {
+    pub fn add(&mut self, sample: &Sample<'_>) {
         if self.cycles == 0 {
             self.first = sample.state.q;
         }

@@ -2,15 +2,13 @@
 
 use serde::Serialize;
 
-use cell::scenario::Metric;
+use cell::scenario::{Metric, Scenario};
 
 use crate::metrics::{
     self, FaultCounts, JointFigures, LevelFigures, LimitCounts, ResidualFigures, TorqueFigures,
 };
 use crate::robot::LinkFigures;
-use cell::names::PlantKind;
-use cell::names::{MeasurementKind, Named};
-use cell::scenario::Scenario;
+use cell::names::{MeasurementKind, Named, PlantKind};
 
 /// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

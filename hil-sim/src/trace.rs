@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use controller_core::joint::DOF;
 
-use crate::experiment::Instant;
+use crate::sample::Sample;
 use cell::scenario::{Scenario, TaskSpec};
 
 /// Writes rows as they come.
@@ -45,7 +45,7 @@ impl<W: Write> Trace<W> {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn push(&mut self, instant: &Instant<'_>) -> io::Result<()> {
+    pub fn push(&mut self, instant: &Sample<'_>) -> io::Result<()> {
         write!(self.out, "{:.16e}", instant.t_s)?;
         for vector in [
             &instant.state.q,

@@ -1,10 +1,10 @@
 //! The core's kinematics and dynamics against identities that any correct
 //! model obeys, and against the independent plant.
 
+use cell::scenario::{BUILT_IN, Scenario};
 use controller_core::arm::{LWR_IV, Link};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use hil_sim::plant::PlantModel;
-use cell::scenario::{BUILT_IN, Scenario};
 use stratum_tests::random::States;
 use stratum_tests::{JOINTS, evaluate, lwr, relative, unit};
 

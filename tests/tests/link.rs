@@ -2,12 +2,12 @@
 //! freezes, in virtual time: the figures that a user may count on.
 
 use bridge::session::Phase;
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use hil_sim::link::Fault;
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
-use cell::names::PlantKind;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use cell::scenario::Scenario;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 

@@ -3,15 +3,15 @@
 
 use std::time::Instant;
 
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use controller_core::arm::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::ranges::DEAD_CYCLES_MAX;
 use controller_core::{Controller, Measurement, State, Target};
 use hil_sim::plant::elastic::JOINT_STIFFNESS;
 use hil_sim::plant::friction::COULOMB;
 use hil_sim::plant::{Plant, PlantModel, PlantOptions};
-use cell::names::PlantKind;
-use controller_core::ranges::DEAD_CYCLES_MAX;
-use cell::scenario::Scenario;
 
 const CYCLE: f64 = 0.002;
 const START: [f64; DOF] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];

@@ -1,12 +1,11 @@
 //! The two-level experiment in closed loop: figures are the worst over seeds 1
 //! to 10, as the README states them.
 
+use cell::names::{MeasurementKind, NullStiffness, PlantKind};
+use cell::scenario::Scenario;
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
-use cell::names::{MeasurementKind, NullStiffness};
 use hil_sim::plant::PlantOptions;
-use cell::names::PlantKind;
-use cell::scenario::Scenario;
 use hil_sim::summary::{Summary, Verdict};
 use hil_sim::trace::Trace;
 

@@ -3,8 +3,8 @@
 use super::{Axes, Target, orientation};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{Link, LinkPoint};
-use crate::error::ConfigError;
-use crate::gain::{self, Gain, diagonal};
+use crate::error::{ConfigError, Gain};
+use crate::gain::{self, diagonal};
 use crate::joint::{Matrix3, Vector3, zeros};
 use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M};
 use crate::real::Real;

@@ -3,9 +3,9 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::experiment::Instant;
 use crate::output::{self, Draft};
 use crate::report::{self, Choices, Recording};
+use crate::sample::Sample;
 use crate::summary::Summary;
 use crate::trace::Trace;
 use cell::invalid::Invalid;
@@ -38,7 +38,7 @@ impl Files {
     ///
     /// # Errors
     /// The disk.
-    pub fn push(&mut self, scenario: &Scenario, instant: &Instant<'_>) -> io::Result<()> {
+    pub fn push(&mut self, scenario: &Scenario, instant: &Sample<'_>) -> io::Result<()> {
         self.recording.record(scenario, instant);
         self.trace.push(instant)
     }

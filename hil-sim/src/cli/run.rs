@@ -16,8 +16,7 @@ use crate::report::Choices;
 use crate::summary::Summary;
 use cell::arguments::values::{dead_cycles, number, seed};
 use cell::invalid::{Invalid, in_range, positive};
-use cell::names::PlantKind;
-use cell::names::{MeasurementKind, Named, NullStiffness, Switch};
+use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
 use cell::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use cell::terminal::{print, show, tell};
 

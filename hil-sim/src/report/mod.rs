@@ -30,8 +30,7 @@ use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
 use crate::summary::{CLIENT, Summary, Verdict};
 use cell::names::{MeasurementKind, NullStiffness};
-use cell::scenario::Scenario;
-use cell::scenario::{Hand, Interval, Push};
+use cell::scenario::{Hand, Interval, Push, Scenario};
 
 /// A finished run, as the figures and the report need it.
 #[derive(Clone, Copy, Debug)]

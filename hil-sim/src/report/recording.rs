@@ -7,8 +7,8 @@
 
 use controller_core::joint::{DOF, JointState, JointVector};
 
-use crate::experiment::{Instant, LevelInstant};
 use crate::plant::PlantModel;
+use crate::sample::{LevelSample, Sample};
 use cell::scenario::Scenario;
 
 /// Most rows that are kept.
@@ -156,8 +156,8 @@ impl Recording {
     }
 
     /// Adds a cycle of an experiment.
-    pub fn record(&mut self, scenario: &Scenario, instant: &Instant<'_>) {
-        let level = |level: &LevelInstant| LevelCycle {
+    pub fn record(&mut self, scenario: &Scenario, instant: &Sample<'_>) {
+        let level = |level: &LevelSample| LevelCycle {
             error: level.error,
             leak: level.leak,
             desired: level.desired_point,

@@ -8,8 +8,7 @@ use super::{Run, letter};
 use crate::metrics::LevelFigures;
 use crate::robot::LinkFigures;
 use cell::names::Named;
-use cell::scenario::Metric;
-use cell::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+use cell::scenario::{AxisGain, LevelSpec, Metric, PostureSpec, ReferenceSpec};
 
 /// A table under construction: rows of cells that are HTML already.
 pub(crate) struct Table {

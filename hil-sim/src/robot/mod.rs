@@ -44,14 +44,12 @@ pub use rating::{Quality, Rating, Statistics};
 
 use crate::arm_points::origins;
 use crate::contact::{Contacts, push_torque};
-use crate::experiment::{Instant, LevelInstant, Places, unsafe_motion};
 use crate::metrics::{FaultCounts, Metrics};
 use crate::plant::{DeadTime, Plant, PlantOptions};
+use crate::sample::{LevelProbes, LevelSample, Sample, Stop, UnsafeMotion};
 use crate::summary::{self, Summary, Verdict};
-use cell::names::Named;
-use cell::names::PlantKind;
-use cell::scenario::Push;
-use cell::scenario::{PointSpec, Scenario};
+use cell::names::{Named, PlantKind};
+use cell::scenario::{PointSpec, Push, Scenario};
 use counters::Counters;
 use inbox::Inbox;
 use krc::{Added, Now};
@@ -106,7 +104,7 @@ pub struct Robot {
     /// Pushes typed while it runs, in robot time.
     typed: Vec<Push>,
     drives_off: bool,
-    places: Places,
+    probes: LevelProbes,
     metrics: Metrics,
     /// Cycles since the first answer.
     cycle: u64,
@@ -116,7 +114,7 @@ pub struct Robot {
     /// Torque of the last cycle \[Nm\].
     applied: Option<JointVector<f64>>,
     shown: Shown,
-    stop: Option<String>,
+    stop: Option<Stop>,
     ended_in_monitor: bool,
 }
 
@@ -139,13 +137,13 @@ struct Seen {
     hand_force_n: f64,
 }
 
-/// What an [`Instant`] of the last cycle refers to.
+/// What an [`Sample`] of the last cycle refers to.
 struct Shown {
     state: JointState<f64>,
     torque: JointVector<f64>,
     residual: JointVector<f64>,
     tau_ext: JointVector<f64>,
-    levels: Vec<LevelInstant>,
+    levels: Vec<LevelSample>,
 }
 
 /// The way of added torque to the motors: so many cycles long.
@@ -211,7 +209,7 @@ impl Robot {
             contacts,
             typed: Vec::new(),
             drives_off: false,
-            places: Places::new(scenario),
+            probes: LevelProbes::new(scenario),
             cycle: 0,
             start: None,
             seen: None,
@@ -281,13 +279,13 @@ impl Robot {
 
     /// Ends the cycle: rates the link, moves the arm. What the cycle was, if
     /// scenario time runs. Before the first answer nothing moves and no time passes.
-    pub fn advance(&mut self) -> Option<Instant<'_>> {
+    pub fn advance(&mut self) -> Option<Sample<'_>> {
         if !self.inbox.has_begun() || self.stop.is_some() {
             return None;
         }
         let seen = self.look();
-        if let Some(reason) = unsafe_motion(&seen.truth, &self.speed_limit) {
-            self.stop = Some(reason);
+        if let Some(motion) = UnsafeMotion::of(&seen.truth, &self.speed_limit) {
+            self.stop = Some(Stop::Unsafe(motion));
             return None;
         }
         let state = self.krc.state();
@@ -349,7 +347,7 @@ impl Robot {
             .scenario
             .reference(&start.origins, &start.posture, t_s);
         self.shown.levels = self.levels(&reference);
-        let instant = Instant {
+        let sample = Sample {
             t_s,
             state: &self.shown.state,
             torque: &self.shown.torque,
@@ -362,12 +360,12 @@ impl Robot {
             levels: &self.shown.levels,
             plant: self.plant.model(),
         };
-        self.metrics.add(&instant);
-        Some(instant)
+        self.metrics.add(&sample);
+        Some(sample)
     }
 
-    fn levels(&self, reference: &Reference<f64>) -> Vec<LevelInstant> {
-        self.places
+    fn levels(&self, reference: &Reference<f64>) -> Vec<LevelSample> {
+        self.probes
             .levels(self.plant.model(), &self.shown.state, reference)
     }
 
@@ -513,10 +511,8 @@ impl Robot {
     }
 
     /// Ends the run early.
-    pub fn abort(&mut self, reason: &str) {
-        if self.stop.is_none() {
-            self.stop = Some(reason.to_string());
-        }
+    pub fn abort(&mut self, stop: Stop) {
+        self.stop.get_or_insert(stop);
     }
 
     /// Turns the drives off or on.

@@ -93,7 +93,7 @@ impl Robot {
         };
         let acceptance = summary::judge(scenario, &conditions, &levels);
         let (verdict, reason) = match &self.stop {
-            Some(reason) => (Verdict::Stopped, Some(reason.clone())),
+            Some(stop) => (Verdict::Stopped, Some(stop.to_string())),
             None => match summary::verdict(&acceptance) {
                 (_, reason) if self.ended_in_monitor => {
                     let lost = "not in command state at the end".to_string();
