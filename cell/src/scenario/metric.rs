@@ -1,6 +1,6 @@
 //! Figures that a limit can name, and their units.
 
-use super::{LevelSpec, TaskSpec};
+use super::level::{LevelSpec, TaskSpec};
 use crate::invalid::Invalid;
 
 /// A figure that an acceptance limit can name.
