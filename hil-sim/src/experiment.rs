@@ -14,11 +14,12 @@ use crate::loopback::{self, BridgeClient};
 use crate::metrics::{FaultCounts, Metrics};
 use crate::plant::{Plant, PlantOptions};
 use crate::robot::{Robot, RobotOptions, RobotSetup};
-use crate::sample::{LevelProbes, Sample, Stop, UnsafeMotion};
+use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{self, Conditions, Summary, Verdict};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind};
 use cell::scenario::Scenario;
+use record::run::Sample;
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]
@@ -93,7 +94,7 @@ impl Experiment {
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
-        mut sink: impl FnMut(&Sample<'_>) -> io::Result<()>,
+        mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         let config = self.session().map_err(io::Error::other)?;
@@ -124,7 +125,7 @@ impl Experiment {
     pub fn run(
         &self,
         controller: &Controller<f64>,
-        mut sink: impl FnMut(&Sample<'_>) -> io::Result<()>,
+        mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         if self.measurement == MeasurementKind::Fri {
@@ -192,16 +193,15 @@ impl Experiment {
             }
             let sample = Sample {
                 t_s,
-                state: &truth,
-                torque: &step.torque,
-                residual: &step.residual,
+                state: truth,
+                torque: step.torque,
+                residual: step.residual,
                 saturated: step.status.saturated.any(),
                 rank: step.status.rank.any(),
-                tau_ext: &-contact_torque,
+                tau_ext: -contact_torque,
                 hand_force_n,
-                conditioning: &view.conditioning,
-                levels: &levels,
-                plant: plant.model(),
+                conditioning: view.conditioning,
+                levels,
             };
             metrics.add(&sample);
             sink(&sample)?;

@@ -5,7 +5,7 @@ use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
-use crate::sample::Sample;
+use record::run::Sample;
 
 /// Root mean square of what was added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -230,7 +230,7 @@ impl Metrics {
     }
 
     /// Adds a cycle.
-    pub fn add(&mut self, sample: &Sample<'_>) {
+    pub fn add(&mut self, sample: &Sample) {
         if self.cycles == 0 {
             self.first = sample.state.q;
         }
@@ -241,7 +241,7 @@ impl Metrics {
             .contacts
             .iter()
             .any(|contact| contact.inside(sample.t_s));
-        for (level, shown) in self.levels.iter_mut().zip(sample.levels) {
+        for (level, shown) in self.levels.iter_mut().zip(&sample.levels) {
             if !shown.leak.is_nan() {
                 level.leak = Some(
                     level

@@ -1,4 +1,4 @@
-//! One cycle of a run as figures, files and reports see it.
+//! What is looked at in a cycle of a run, and why a run is ended.
 
 mod level;
 
@@ -8,36 +8,7 @@ use controller_core::Fault;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::ranges::SPEED_FACTOR;
 
-use crate::plant::PlantModel;
-
 pub(crate) use level::LevelProbes;
-pub use level::LevelSample;
-
-/// One cycle of a run, as it is recorded.
-pub struct Sample<'a> {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// True joint state.
-    pub state: &'a JointState<f64>,
-    /// Torque that acts from now on for a cycle \[Nm\].
-    pub torque: &'a JointVector<f64>,
-    /// r \[Nm\].
-    pub residual: &'a JointVector<f64>,
-    /// Whether a torque was cut to its limit.
-    pub saturated: bool,
-    /// Whether a task row could not be resolved.
-    pub rank: bool,
-    /// True tau_ext of (6) \[Nm\]: minus the joint torque of the contacts.
-    pub tau_ext: &'a JointVector<f64>,
-    /// Largest force of a hand \[N\].
-    pub hand_force_n: f64,
-    /// |R_kk| per task row; empty where it is not known.
-    pub conditioning: &'a [f64],
-    /// Every level, highest priority first.
-    pub levels: &'a [LevelSample],
-    /// The arm.
-    pub plant: &'a PlantModel,
-}
 
 /// Why a run ended before its time.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -140,7 +140,7 @@ fn execute(run: &Planned) -> Result<Outcome, Invalid> {
             &controller,
             |instant| {
                 if let Some(recording) = &mut recording {
-                    recording.record(scenario, instant);
+                    recording.push(scenario, instant);
                 }
                 Ok(())
             },

@@ -32,8 +32,8 @@ mod order;
 mod rating;
 mod report;
 
+use controller_core::Target;
 use controller_core::joint::{JointMatrix, JointState, JointVector};
-use controller_core::{Reference, Target};
 
 pub use figures::{Event, LatencyFigures, LinkFigures, QualityCycles, Rejected, StateCycles};
 pub use krc::{Krc, State};
@@ -46,13 +46,14 @@ use crate::arm_points::origins;
 use crate::contact::{Contacts, push_torque};
 use crate::metrics::{FaultCounts, Metrics};
 use crate::plant::{DeadTime, Plant, PlantOptions};
-use crate::sample::{LevelProbes, LevelSample, Sample, Stop, UnsafeMotion};
+use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{self, Summary, Verdict};
 use cell::names::{Named, PlantKind};
 use cell::scenario::{PointSpec, Push, Scenario};
 use counters::Counters;
 use inbox::Inbox;
 use krc::{Added, Now};
+use record::run::Sample;
 
 /// Bytes of a measurement datagram.
 pub const MEASUREMENT_BYTES: usize = 916;
@@ -113,7 +114,6 @@ pub struct Robot {
     seen: Option<Seen>,
     /// Torque of the last cycle \[Nm\].
     applied: Option<JointVector<f64>>,
-    shown: Shown,
     stop: Option<Stop>,
     ended_in_monitor: bool,
 }
@@ -135,15 +135,6 @@ struct Seen {
     /// +J^T F of all contacts \[Nm\].
     contact: JointVector<f64>,
     hand_force_n: f64,
-}
-
-/// What an [`Sample`] of the last cycle refers to.
-struct Shown {
-    state: JointState<f64>,
-    torque: JointVector<f64>,
-    residual: JointVector<f64>,
-    tau_ext: JointVector<f64>,
-    levels: Vec<LevelSample>,
 }
 
 /// The way of added torque to the motors: so many cycles long.
@@ -214,13 +205,6 @@ impl Robot {
             start: None,
             seen: None,
             applied: None,
-            shown: Shown {
-                state: *Plant::new(setup.plant, arm, q0, cycle_s, setup.seed).state(),
-                torque: JointVector::zeros(),
-                residual: JointVector::zeros(),
-                tau_ext: JointVector::zeros(),
-                levels: Vec::new(),
-            },
             stop: None,
             ended_in_monitor: false,
             setup,
@@ -279,7 +263,7 @@ impl Robot {
 
     /// Ends the cycle: rates the link, moves the arm. What the cycle was, if
     /// scenario time runs. Before the first answer nothing moves and no time passes.
-    pub fn advance(&mut self) -> Option<Sample<'_>> {
+    pub fn advance(&mut self) -> Option<Sample> {
         if !self.inbox.has_begun() || self.stop.is_some() {
             return None;
         }
@@ -332,41 +316,32 @@ impl Robot {
             self.counters.event(t_s, self.robot_time_s(), text);
         }
 
-        self.shown.state = seen.truth;
-        self.shown.torque = applied;
-        self.shown.residual = self
+        let residual = self
             .krc
             .order()
             .map_or(JointVector::zeros(), |order| order.residual);
-        self.shown.tau_ext = -seen.contact;
         self.move_on(&explicit, &driving.impedance);
 
         let (t_s, start) = (t_s?, self.start.as_ref()?);
-        let reference = self
-            .setup
-            .scenario
-            .reference(&start.origins, &start.posture, t_s);
-        self.shown.levels = self.levels(&reference);
+        let scenario = &self.setup.scenario;
+        let reference = scenario.reference(&start.origins, &start.posture, t_s);
+        let levels = self
+            .probes
+            .levels(self.plant.model(), &seen.truth, &reference);
         let sample = Sample {
             t_s,
-            state: &self.shown.state,
-            torque: &self.shown.torque,
-            residual: &self.shown.residual,
+            state: seen.truth,
+            torque: applied,
+            residual,
             saturated,
             rank: false,
-            tau_ext: &self.shown.tau_ext,
+            tau_ext: -seen.contact,
             hand_force_n: seen.hand_force_n,
-            conditioning: &[],
-            levels: &self.shown.levels,
-            plant: self.plant.model(),
+            conditioning: Vec::new(),
+            levels,
         };
         self.metrics.add(&sample);
         Some(sample)
-    }
-
-    fn levels(&self, reference: &Reference<f64>) -> Vec<LevelSample> {
-        self.probes
-            .levels(self.plant.model(), &self.shown.state, reference)
     }
 
     /// Moves the arm to the next cycle.

@@ -6,25 +6,9 @@ use controller_core::{Axes, LinkPoint, Reference, Target};
 
 use crate::arm_points;
 use crate::plant::PlantModel;
-use cell::scenario::{LevelSpec, Scenario, TaskSpec};
+use record::run::LevelSample;
 
-/// One level at one instant, true values.
-#[derive(Clone, Debug, Default)]
-pub struct LevelSample {
-    /// Desired coordinates of its axes \[m\], or the desired quaternion.
-    pub desired: Vec<f64>,
-    /// True coordinates of its axes \[m\], or the true quaternion.
-    pub actual: Vec<f64>,
-    /// Norm of their difference \[m\], or the angle between them about the axes \[rad\].
-    pub error: f64,
-    /// Norm of the task acceleration that the torques of lower levels and of the
-    /// null space cause on this arm \[m/s2\], or \[rad/s2\]; NaN where it is not known.
-    pub leak: f64,
-    /// Desired position of the point \[m\].
-    pub desired_point: [f64; 3],
-    /// True position of the point \[m\].
-    pub actual_point: [f64; 3],
-}
+use cell::scenario::{LevelSpec, Scenario, TaskSpec};
 
 /// What is looked at of a scenario's levels: their points and axes.
 pub(crate) struct LevelProbes(pub Vec<LevelProbe>);

@@ -20,7 +20,7 @@ pub use udp::Udp;
 
 use crate::link::{Fault, LockStep};
 use crate::robot::Robot;
-use crate::sample::Sample;
+use record::run::Sample;
 
 /// How a robot is served.
 #[derive(Clone, Debug)]
@@ -79,7 +79,7 @@ impl Service {
         robot: &mut Robot,
         operator: &mut Operator,
         client: &mut impl Transport,
-        sink: impl FnMut(&Sample<'_>) -> io::Result<()>,
+        sink: impl FnMut(&Sample) -> io::Result<()>,
     ) -> io::Result<End> {
         if self.lockstep {
             self.lockstep(robot, operator, client, sink)
@@ -93,7 +93,7 @@ impl Service {
         robot: &mut Robot,
         operator: &mut Operator,
         client: &mut impl Transport,
-        mut sink: impl FnMut(&Sample<'_>) -> io::Result<()>,
+        mut sink: impl FnMut(&Sample) -> io::Result<()>,
     ) -> io::Result<End> {
         let cycle_s = robot.setup().scenario.cycle_s();
         let mut link = LockStep::new(&self.faults, cycle_s, robot.setup().seed);

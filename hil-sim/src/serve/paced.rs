@@ -10,7 +10,7 @@ use super::transport::{RESEND, Transport};
 use super::{End, Operator, Service};
 use crate::link::{Channel, Direction};
 use crate::robot::{MEASUREMENT_BYTES, Robot};
-use crate::sample::Sample;
+use record::run::Sample;
 
 /// Runs the service in real time.
 pub(super) fn run(
@@ -18,7 +18,7 @@ pub(super) fn run(
     robot: &mut Robot,
     operator: &mut Operator,
     client: &mut impl Transport,
-    mut sink: impl FnMut(&Sample<'_>) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
     let mut measurement = [0; MEASUREMENT_BYTES];
