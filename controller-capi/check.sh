@@ -10,12 +10,7 @@ build=${CARGO_TARGET_DIR:-$PWD/target}
 out=$build/capi
 mkdir -p "$out"
 
-# have TOOL [PACKAGE]: whether there is a tool, or can be.
-have() {
-  command -v "$1" > /dev/null ||
-    { [ "$(id -u)" = 0 ] && apt-get install -y -qq "${2:-$1}" > /dev/null 2>&1 &&
-      command -v "$1" > /dev/null; }
-}
+have() { command -v "$1" > /dev/null; }
 step() { printf -- '-- %s\n' "$*"; }
 skipped() { echo "SKIPPED $*"; }
 fail() { echo "$*"; exit 1; }
@@ -96,7 +91,7 @@ same() {
 }
 
 step "host: C programs, both precisions"
-if command -v gcc > /dev/null; then
+if have gcc; then
   for precision in f64 f32; do
     library "$precision"
     archive=$build/capi-$precision/release/libstratum.a
@@ -120,7 +115,7 @@ else
 fi
 
 step "host: the header in other dialects"
-if command -v gcc > /dev/null; then
+if have gcc; then
   # Sizes are held by assertions in the header.
   for dialect in "-std=c11 -fshort-enums" "-std=c17" "-std=c2x -fshort-enums"; do
     # shellcheck disable=SC2086
@@ -130,7 +125,7 @@ if command -v gcc > /dev/null; then
 else
   skipped "header in other dialects of C: no gcc"
 fi
-if command -v g++ > /dev/null; then
+if have g++; then
   library f64
   for dialect in c++11 c++20; do
     g++ -fsyntax-only -std=$dialect -Wall -Wextra -Wpedantic -Wconversion -Werror \
@@ -151,7 +146,7 @@ installed() {
 }
 
 step "host: installed, found by pkg-config and by CMake"
-if ! command -v gcc > /dev/null; then
+if ! have gcc; then
   skipped "installed library on the host: no gcc"
 else
   installed "$out/prefix"
@@ -174,7 +169,7 @@ else
 fi
 
 step "host: memory, by valgrind"
-if command -v valgrind > /dev/null && command -v gcc > /dev/null; then
+if have valgrind && have gcc; then
   for program in $programs; do
     valgrind --error-exitcode=9 --leak-check=full --log-file="$out/valgrind.txt" \
       "$out/$program-f64" > /dev/null || { cat "$out/valgrind.txt"; exit 1; }
@@ -191,7 +186,7 @@ else
 fi
 
 step "target: C programs on an emulated Cortex-M7, both precisions"
-if ! command -v arm-none-eabi-gcc > /dev/null; then
+if ! have arm-none-eabi-gcc; then
   skipped "C programs on the target: no arm-none-eabi-gcc"
 elif ! rustup target list --installed 2> /dev/null | grep -qx "$target" &&
   ! rustup target add "$target"; then
@@ -217,7 +212,7 @@ else
     arm-none-eabi-gcc $flags -ffreestanding -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard \
       -c rtos_task.c -o "$out/rtos_task.o"
     arm-none-eabi-size "$out/bare_loop-$precision.elf"
-    if command -v qemu-system-arm > /dev/null; then
+    if have qemu-system-arm; then
       for program in $target_programs; do
         timeout 120 qemu-system-arm -M mps2-an500 -display none -serial null -monitor none \
           -semihosting-config enable=on,target=native \

@@ -1,7 +1,8 @@
 //! Prints the part of `include/stratum.h` that is names for numbers: `check.sh header`
 //! puts it in the place of a marker.
 
-use stratum::constants::{Constant, HEADER, Names};
+use stratum::constants::{Constant, Names};
+use stratum::header::HEADER;
 
 /// A comment of the header, in lines of at most `WIDTH` characters.
 fn comment(indent: &str, text: &str) {

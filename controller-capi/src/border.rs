@@ -10,6 +10,7 @@ use core::fmt::{self, Write};
 use core::mem::MaybeUninit;
 use core::slice;
 
+use controller_core::fault::Status;
 use controller_core::joint::zeros;
 use controller_core::{Controller, Reference, State, Step};
 
@@ -18,7 +19,9 @@ use crate::codes::{
     STRATUM_ERROR_UNINITIALISED, StratumResult,
 };
 use crate::constants::{STRATUM_TARGET_HOLD, StratumTargetKind};
-use crate::{IDLE, STRATUM_LEVELS, Scalar, StratumController, StratumState};
+use crate::scalar::Scalar;
+use crate::settings::{STRATUM_ABI_VERSION, STRATUM_LEVELS};
+use crate::storage::{StratumController, StratumState};
 
 /// A state with what it was last told and what it last answered.
 pub(crate) struct Held {
@@ -30,6 +33,15 @@ pub(crate) struct Held {
 }
 
 impl Held {
+    /// Before the first cycle and after a reset.
+    pub(crate) const IDLE: Step<Scalar> = Step {
+        torque: zeros(),
+        residual: zeros(),
+        gravity: zeros(),
+        coriolis: zeros(),
+        status: Status::CLEAR,
+    };
+
     /// Before the first cycle, without levels. A call of its own: its stack is free again
     /// when the references are made.
     #[inline(never)]
@@ -40,7 +52,7 @@ impl Held {
             (&raw mut (*held).state).write(State::new());
             (&raw mut (*held).reference).write(Reference::hold(0, zeros()));
             (&raw mut (*held).kinds).write([STRATUM_TARGET_HOLD; STRATUM_LEVELS]);
-            (&raw mut (*held).step).write(IDLE);
+            (&raw mut (*held).step).write(Self::IDLE);
             place.assume_init_mut()
         }
     }
@@ -61,7 +73,7 @@ pub(crate) trait Storage: Sized {
 }
 
 /// Lowest byte: version of the interface; next: bytes of the scalar.
-const KIND: u64 = crate::STRATUM_ABI_VERSION as u64 | (size_of::<Scalar>() as u64) << 8;
+const KIND: u64 = STRATUM_ABI_VERSION as u64 | (size_of::<Scalar>() as u64) << 8;
 
 impl Storage for StratumController {
     type Content = Controller<Scalar>;

@@ -65,7 +65,7 @@ macro_rules! choices {
             constants! { $list: $kind $constants }
         )*
 
-        const CHOICES: &[Names] = &[$(Names {
+        pub(crate) const CHOICES: &[Names] = &[$(Names {
             kind: stringify!($kind),
             integer: "uint32_t",
             about: $about,
@@ -109,24 +109,3 @@ choices! {
              STRATUM_TASK_ORIENTATION";
     }
 }
-
-const CODES: &[Names] = &[
-    Names {
-        kind: "StratumResult",
-        integer: "int32_t",
-        about: "What a function answers: STRATUM_OK, an argument error (1 to 31), a latched \
-                fault (32 to 95) or a configuration error (from 128). The numbers are stable.",
-        constants: &[crate::ERRORS, crate::FAULTS, crate::CONFIG_ERRORS],
-    },
-    Names {
-        kind: "StratumLimit",
-        integer: "int32_t",
-        about: "What limited or degraded a cycle whose torque is valid, for logs: \
-                StratumStatus has a field for each. The numbers are stable and none is a \
-                StratumResult.",
-        constants: &[crate::LIMITS],
-    },
-];
-
-/// Everything that the header has of this, in its order.
-pub const HEADER: [&[Names]; 2] = [CODES, CHOICES];

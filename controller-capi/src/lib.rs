@@ -17,102 +17,36 @@ use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
 
 use controller_core::fault::Status;
-use controller_core::joint::{JointVector, zeros};
+use controller_core::joint::JointVector;
 use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Step};
 
 mod border;
 mod codes;
 pub mod constants;
+pub mod header;
+mod scalar;
+// The header has their sizes in this order.
+mod storage;
+
+mod status;
+
 mod reference;
 mod settings;
 
 pub use codes::*;
 pub use constants::*;
-pub use reference::STRATUM_REFERENCE_SIZE;
-pub use reference::StratumReference;
+pub use reference::{STRATUM_REFERENCE_SIZE, StratumReference};
+pub use scalar::Scalar;
 pub use settings::*;
+pub use status::*;
+pub use storage::*;
 
 use border::Held;
-
-/// What the library computes in.
-#[cfg(not(feature = "single"))]
-pub type Scalar = f64;
-/// What the library computes in.
-#[cfg(feature = "single")]
-pub type Scalar = f32;
-
-/// Storage of a controller in words of 8 bytes.
-pub const STRATUM_CONTROLLER_WORDS: usize = 640;
-/// Storage of a state in words of 8 bytes.
-pub const STRATUM_STATE_WORDS: usize = 1024;
-/// sizeof(StratumController).
-pub const STRATUM_CONTROLLER_SIZE: usize = STRATUM_CONTROLLER_WORDS * 8;
-/// Alignment of a StratumController.
-pub const STRATUM_CONTROLLER_ALIGN: usize = 8;
-/// sizeof(StratumState).
-pub const STRATUM_STATE_SIZE: usize = STRATUM_STATE_WORDS * 8;
-/// Alignment of a StratumState.
-pub const STRATUM_STATE_ALIGN: usize = 8;
-/// A text buffer of this size holds every text.
-pub const STRATUM_TEXT_SIZE: usize = 512;
-
-const _: () = assert!(size_of::<StratumController>() == STRATUM_CONTROLLER_SIZE);
-const _: () = assert!(align_of::<StratumController>() == STRATUM_CONTROLLER_ALIGN);
-const _: () = assert!(size_of::<StratumState>() == STRATUM_STATE_SIZE);
-const _: () = assert!(align_of::<StratumState>() == STRATUM_STATE_ALIGN);
-
-/// Storage of the immutable part: arm, levels, gains, limits. One controller can
-/// drive several states. It may be static, on a stack or copied.
-#[repr(C)]
-pub struct StratumController {
-    /// Not to be read or written.
-    pub opaque: [u64; STRATUM_CONTROLLER_WORDS],
-}
-
-/// Storage of what changes from cycle to cycle, with the references.
-#[repr(C)]
-pub struct StratumState {
-    /// Not to be read or written.
-    pub opaque: [u64; STRATUM_STATE_WORDS],
-}
-
-/// What limited or degraded the last cycle.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StratumStatus {
-    /// The latched fault (STRATUM_FAULT_...), STRATUM_OK if there is none.
-    pub fault: StratumResult,
-    /// Joint or level of the fault, counted from 1; 0 where there is only one.
-    pub fault_index: u32,
-    /// The value that made the fault.
-    pub fault_value: f64,
-    /// Smallest value allowed.
-    pub fault_min: f64,
-    /// Largest value allowed.
-    pub fault_max: f64,
-    /// STRATUM_LIMIT_SATURATED: joints whose torque was cut to its limit, bit 0 is joint 1.
-    pub saturated: u32,
-    /// STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
-    /// leave no motion for them; bit 0 is the first row of level 1.
-    pub rank: u32,
-}
-
-/// sizeof(StratumStatus).
-pub const STRATUM_STATUS_SIZE: usize = 40;
-const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);
+use scalar::finite;
 
 fn code(result: Result<(), StratumResult>) -> StratumResult {
     result.err().unwrap_or(STRATUM_OK)
-}
-
-fn finite<const N: usize>(values: [f64; N]) -> Result<[Scalar; N], StratumResult> {
-    let values = values.map(Scalar::from_f64);
-    if values.iter().all(|value| value.finite()) {
-        Ok(values)
-    } else {
-        Err(STRATUM_ERROR_NON_FINITE)
-    }
 }
 
 const VERSION: &CStr =
@@ -247,15 +181,6 @@ impl Held {
         }
     }
 }
-
-/// Before the first cycle and after a reset.
-const IDLE: Step<Scalar> = Step {
-    torque: zeros(),
-    residual: zeros(),
-    gravity: zeros(),
-    coriolis: zeros(),
-    status: Status::CLEAR,
-};
 
 /// Sets all references to rest where the posture `q` in rad puts them.
 /// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS]]
@@ -515,7 +440,7 @@ pub unsafe extern "C" fn stratum_reset(state: *mut StratumState) -> StratumResul
     // SAFETY: the contract of the header.
     code(unsafe { border::held_mut(state) }.map(|held| {
         held.state.reset();
-        held.step = IDLE;
+        held.step = Held::IDLE;
     }))
 }
 

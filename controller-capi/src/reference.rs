@@ -10,7 +10,7 @@ use crate::codes::{STRATUM_ERROR_ORIENTATION, STRATUM_ERROR_TARGET, StratumResul
 use crate::constants::{
     STRATUM_TARGET_HOLD, STRATUM_TARGET_ORIENTATION, STRATUM_TARGET_POSITION, StratumTargetKind,
 };
-use crate::{Scalar, finite};
+use crate::scalar::{Scalar, finite};
 
 /// Desired motion of one level, base-plate axes. All of it 0 is a hold: a reference
 /// that nobody has filled moves nothing.

@@ -16,7 +16,6 @@ use controller_core::{
     TaskSet,
 };
 
-use crate::Scalar;
 use crate::codes::{self, StratumResult};
 use crate::constants::{
     STRATUM_AXIS_X, STRATUM_AXIS_Y, STRATUM_AXIS_Z, STRATUM_DAMPING_INERTIA, STRATUM_DAMPING_JOINT,
@@ -24,6 +23,7 @@ use crate::constants::{
     STRATUM_TASK_ORIENTATION, STRATUM_TASK_POSITION, StratumAxes, StratumDampingKind,
     StratumPostureKind, StratumTaskKind,
 };
+use crate::scalar::Scalar;
 
 /// The version of the interface: numbers, structs and functions of this header.
 pub const STRATUM_ABI_VERSION: u32 = 2;

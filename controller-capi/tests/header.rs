@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ffi::CStr;
 
 use controller_core::fault::{FaultKind, LimitKind};
-use stratum::constants::HEADER;
+use stratum::header::HEADER;
 use stratum::{stratum_error_name, stratum_error_text};
 
 /// The enumerators of the header.

@@ -3,7 +3,7 @@
 use crate::blocks::{Header, UserData, check, check_finite};
 use crate::bytes::{f32s_at, put, put_f32s, u32_at};
 use crate::error::Error;
-use crate::{DOF, Frame};
+use crate::frame::{DOF, Frame};
 
 /// Bytes of a command.
 pub const LEN: usize = 376;

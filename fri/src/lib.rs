@@ -29,23 +29,12 @@ pub mod blocks;
 pub mod bytes;
 pub mod command;
 mod error;
+mod frame;
 pub mod measurement;
 pub mod sequence;
 
 pub use blocks::{Header, UserData};
 pub use command::{Command, CommandPacket, Flags};
 pub use error::Error;
+pub use frame::{DOF, Frame, position};
 pub use measurement::{ControlScheme, InterfaceState, Measurement, MeasurementPacket, Quality};
-
-/// Joints of the arm.
-pub const DOF: usize = 7;
-
-/// A frame: three rows of a homogenous matrix, r11 r12 r13 px r21 .. pz, \[m\].
-pub type Frame = [f32; 12];
-
-/// Position of a frame \[m\].
-#[must_use]
-pub fn position(frame: &Frame) -> [f32; 3] {
-    let [_, _, _, x, _, _, _, y, _, _, _, z] = *frame;
-    [x, y, z]
-}

@@ -3,7 +3,7 @@
 use crate::blocks::{Header, UserData, check, check_finite};
 use crate::bytes::{f32s_at, put, put_f32s, u16_at, u32_at};
 use crate::error::Error;
-use crate::{DOF, Frame};
+use crate::frame::{DOF, Frame};
 
 /// Bytes of a measurement.
 pub const LEN: usize = 916;

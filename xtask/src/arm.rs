@@ -3,8 +3,7 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use crate::Outcome;
-use crate::tools::{Need, Tools, failed};
+use crate::tools::{Need, Outcome, Tools, failed};
 
 /// Runs it and decodes what it logs.
 pub fn run() -> Outcome {

@@ -6,10 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::Outcome;
 use crate::figures::Figures;
 use crate::stack::{Below, CallGraph};
-use crate::tools::{Need, Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
+use crate::tools::{Need, Outcome, Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
 use crate::{host, limits, table};
 
 const JSON: &str = "docs/timing.json";

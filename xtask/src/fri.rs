@@ -1,8 +1,7 @@
 //! The controller on the emulated board, for `hil-sim serve` in another terminal.
 
-use crate::Outcome;
 use crate::board::{self, Board, Link};
-use crate::tools::{Need, Tools};
+use crate::tools::{Need, Outcome, Tools};
 
 /// Runs the image until the motion is over, the emergency stop is pulled or the
 /// robot is gone. What it says is printed as it comes.

@@ -5,9 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
-use crate::Outcome;
 use crate::board::{self, Board, Link};
-use crate::tools::{Need, Tools, Trouble, failed};
+use crate::tools::{Need, Outcome, Tools, Trouble, failed};
 
 /// Motion over the serial line \[s\]: the emulated port takes about 40 ms for the
 /// bytes of a cycle.

@@ -1,13 +1,13 @@
 //! Counts lines of code: what a reader has to understand.
 //!
 //! Counted are src/**/*.rs and build.rs of every package, as rustfmt lays them out, without
-//! blank lines, comments and `#[cfg(test)]` modules; tests, benches, examples and generated
-//! files are not. Documentation is counted apart, per public item.
+//! blank lines, comments and `#[cfg(test)]` modules, also those in files of their own; tests,
+//! benches, examples and generated files are not. Documentation is counted apart, per public item.
 
 use std::path::Path;
 use std::process::Command;
 
-use crate::tools::{Trouble, failed};
+use crate::tools::{Outcome, Trouble, failed};
 
 /// Counts of some files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,19 +18,30 @@ struct Lines {
 }
 
 /// Prints a row per package and a sum, of the working tree or of a revision.
-pub fn run(revision: Option<&str>) -> crate::Outcome {
-    let mut packages: Vec<(String, Lines)> = Vec::new();
+pub fn run(revision: Option<&str>) -> Outcome {
+    let mut files: Vec<(String, String)> = Vec::new();
     for file in git(&listing(revision))?.lines() {
-        let Some(package) = package_of(file) else {
+        if package_of(file).is_none() {
             continue;
-        };
+        }
         let text = match revision {
             Some(revision) => git(&["show", &format!("{revision}:{file}")])?,
             // Deleted, and not yet committed.
             None if !Path::new(file).exists() => continue,
             None => std::fs::read_to_string(file)?,
         };
-        let lines = count(&text);
+        files.push((file.to_string(), text));
+    }
+    let tests: Vec<String> = files
+        .iter()
+        .flat_map(|(file, text)| test_modules(file, text))
+        .collect();
+    let mut packages: Vec<(String, Lines)> = Vec::new();
+    for (file, text) in &files {
+        let Some(package) = package_of(file).filter(|_| !is_test(file, &tests)) else {
+            continue;
+        };
+        let lines = count(text);
         match packages.iter_mut().find(|(name, _)| *name == package) {
             Some((_, sum)) => sum.add(lines),
             None => packages.push((package.to_string(), lines)),
@@ -75,6 +86,31 @@ fn package_of(file: &str) -> Option<&str> {
     };
     let counted = !package.contains("/tests/") && !package.contains("/examples/");
     counted.then_some(package)
+}
+
+/// The modules in files of their own that a file has for its tests: their paths, without
+/// what is behind the name.
+fn test_modules(file: &str, text: &str) -> Vec<String> {
+    let folder = ["/lib.rs", "/main.rs", "/mod.rs", ".rs"]
+        .iter()
+        .find_map(|end| file.strip_suffix(end))
+        .unwrap_or(file);
+    let lines = text.lines().map(str::trim);
+    lines
+        .clone()
+        .zip(lines.skip(1))
+        .filter(|(attribute, _)| *attribute == "#[cfg(test)]")
+        .filter_map(|(_, module)| module.strip_suffix(';')?.split("mod ").nth(1))
+        .map(|name| format!("{folder}/{name}"))
+        .collect()
+}
+
+/// Whether a file is one of these modules or below it.
+fn is_test(file: &str, tests: &[String]) -> bool {
+    tests.iter().any(|module| {
+        let rest = file.strip_prefix(module.as_str());
+        rest.is_some_and(|rest| rest == ".rs" || rest.starts_with('/'))
+    })
 }
 
 fn git(arguments: &[&str]) -> Result<String, Trouble> {
@@ -138,6 +174,24 @@ mod tests {
             public_items: 2,
         };
         assert_eq!(count(text), expected);
+    }
+
+    #[test]
+    fn modules_of_tests_do_not_count() {
+        let text = "mod a;\n#[cfg(test)]\nmod tests;\nmod tree;\n";
+        for (file, module) in [
+            ("x/src/rooms.rs", "x/src/rooms/tests"),
+            ("x/src/rooms/mod.rs", "x/src/rooms/tests"),
+            ("x/src/lib.rs", "x/src/tests"),
+        ] {
+            let tests = test_modules(file, text);
+            assert_eq!(tests, [module], "{file}");
+            for end in [".rs", "/mod.rs", "/more.rs"] {
+                assert!(is_test(&format!("{module}{end}"), &tests), "{file} {end}");
+            }
+            assert!(!is_test(&format!("{module}_of.rs"), &tests));
+        }
+        assert!(test_modules("x/src/a.rs", "#[cfg(test)]\nmod tests {\n").is_empty());
     }
 
     #[test]

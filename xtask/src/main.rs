@@ -25,7 +25,7 @@ mod tools;
 use std::process::ExitCode;
 
 use board::Link;
-use tools::Need;
+use tools::{Need, Outcome};
 
 const USAGE: &str = "usage: cargo xtask COMMAND
 
@@ -54,9 +54,6 @@ same-bytes BASE [NEW] [--ignore PART]...
 rooms                  every crate's files in the layers of docs/rooms.txt, none using one
                        above it, and none in a circle
 rooms --graph CRATE    which file uses what of which other file";
-
-/// What came out: a verdict, or why there is none.
-type Outcome = Result<bool, tools::Trouble>;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

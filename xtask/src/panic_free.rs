@@ -1,8 +1,7 @@
 //! Constructor and cycle of the core link without any panic, and the check
 //! notices one.
 
-use crate::Outcome;
-use crate::tools::{Tools, failed};
+use crate::tools::{Outcome, Tools, failed};
 
 /// The function that a reachable panic needs and that does not exist.
 const SYMBOL: &str = "a_panic_is_reachable";

@@ -4,8 +4,7 @@
 use std::ops::Range;
 use std::process::Command;
 
-use crate::Outcome;
-use crate::tools::{Need, TARGET, Tools, Trouble, failed, llvm_tool};
+use crate::tools::{Need, Outcome, TARGET, Tools, Trouble, failed, llvm_tool};
 
 const PACKAGE: &str = "firmware/boards/stm32h743";
 

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::tools::Trouble;
+use crate::tools::{Outcome, Trouble};
 use edges::{Edges, Place};
 use layers::Section;
 use packages::Package;
@@ -68,7 +68,7 @@ impl Rooms {
     }
 
     /// Says what is wrong, and one line for each crate.
-    pub fn run(&self) -> Result<bool, Trouble> {
+    pub fn run(&self) -> Outcome {
         if let Some(package) = self.graph {
             print!("{}", graph(&self.packages[package]));
             return Ok(true);

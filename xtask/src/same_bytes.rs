@@ -4,6 +4,7 @@
 mod builds;
 mod compare;
 mod csv;
+mod difference;
 mod group;
 mod states;
 
@@ -11,10 +12,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-use crate::Outcome;
-use crate::tools::{Trouble, failed};
+use crate::tools::{Outcome, Trouble, failed};
 use builds::{Place, Source};
-use compare::Difference;
 use group::Group;
 
 const SCENARIOS: [&str; 4] = ["two-level", "case-1", "case-2", "hand"];

@@ -2,8 +2,7 @@
 
 use std::fs;
 
-use crate::Outcome;
-use crate::tools::{Need, Tools, Trouble};
+use crate::tools::{Need, Outcome, Tools, Trouble};
 
 /// The log that the image opens.
 const LOG: &str = "selftest.log";

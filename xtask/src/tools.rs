@@ -12,6 +12,9 @@ pub const TARGET: &str = "thumbv7em-none-eabihf";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
+/// What came out: a verdict, or why there is none.
+pub type Outcome = Result<bool, Trouble>;
+
 /// Why there is no verdict.
 #[derive(Debug)]
 pub enum Trouble {

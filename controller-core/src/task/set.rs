@@ -217,11 +217,14 @@ impl<T: Real> Levels<T> {
                 }
                 Tracked::Orientation(link) => LevelPoint::Orientation(link),
             };
+            let TaskGains { stiffness, damping } = &task.gains;
             for row in 0..3 {
                 for column in 0..3 {
-                    let TaskGains { stiffness, damping } = &task.gains;
-                    level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
-                    level.damping[(row, column)] = T::from_f64(damping[row][column]);
+                    // The others are not read: whatever stands there stays out.
+                    if task.axes.contains(row) && task.axes.contains(column) {
+                        level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
+                        level.damping[(row, column)] = T::from_f64(damping[row][column]);
+                    }
                 }
             }
         }

@@ -226,7 +226,7 @@ fn command(run: &Run<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::recording::{ArmSnapshot, Cycle, LevelCycle, Recording};
+    use super::super::recording::{ArmSnapshot, Recording};
     use super::super::svg::well_formed;
     use super::*;
     use crate::controllers::ControllerKind;
@@ -234,7 +234,8 @@ mod tests {
     use crate::plant::PlantOptions;
     use cell::names::PlantKind;
     use cell::names::{MeasurementKind, NullStiffness};
-    use controller_core::joint::JointVector;
+    use controller_core::joint::{JointState, JointVector};
+    use record::run::{LevelSample, Sample};
 
     /// A short real summary, and a recording with what `value` gives.
     fn run(value: f64) -> (Summary, Scenario, Recording) {
@@ -255,20 +256,29 @@ mod tests {
         let mut recording = Recording::new(&scenario, true);
         let joints = JointVector::repeat(value);
         for k in 0..100 {
-            recording.push(&Cycle {
+            let level = LevelSample {
+                error: value,
+                leak: value,
+                desired_point: [value; 3],
+                actual_point: [value; 3],
+                ..LevelSample::default()
+            };
+            let sample = Sample {
                 t_s: f64::from(k) * 2e-3,
-                q: &joints,
-                residual: &joints,
-                tau_ext: &joints,
-                conditioning: &[value; 7],
-                levels: &[LevelCycle {
-                    error: value,
-                    leak: value,
-                    desired: [value; 3],
-                    actual: [value; 3],
-                }],
-                hand_force_n: Some(value),
-            });
+                state: JointState {
+                    q: joints,
+                    dq: joints,
+                },
+                torque: joints,
+                residual: joints,
+                saturated: false,
+                rank: false,
+                tau_ext: joints,
+                hand_force_n: value,
+                conditioning: vec![value; 7],
+                levels: vec![level],
+            };
+            recording.push(&scenario, &sample);
         }
         recording.arms.push(ArmSnapshot {
             t_s: 0.0,

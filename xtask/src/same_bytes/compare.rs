@@ -1,4 +1,4 @@
-//! Differences between two results, each by the name that a reader of the file knows.
+//! Differences between the results of two programs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,39 +8,9 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use super::{Group, csv};
-
-/// A place where the two differ.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
-    /// CSV column or JSON path; empty where it is neither and nothing excuses it.
-    pub name: String,
-    /// The place and both values.
-    pub text: String,
-}
-
-impl Difference {
-    /// At a JSON path.
-    pub fn at(path: &str, base: &str, new: &str) -> Self {
-        Self {
-            name: path.into(),
-            text: format!("{path}: base {}, new {}", short(base), short(new)),
-        }
-    }
-
-    /// That nothing excuses.
-    pub fn nameless(text: String) -> Self {
-        Self {
-            name: String::new(),
-            text,
-        }
-    }
-
-    /// Whether its name has one of these parts.
-    pub fn excused(&self, parts: &[String]) -> bool {
-        parts.iter().any(|part| self.name.contains(part))
-    }
-}
+use super::csv;
+use super::difference::{Difference, short};
+use super::group::Group;
 
 /// The exit codes, with what the new program said about its own.
 pub fn exits(outputs: &[Output; 2]) -> Vec<Difference> {
@@ -184,14 +154,6 @@ fn json(path: &str, base: Option<&Value>, new: Option<&Value>, found: &mut Vec<D
     }
 }
 
-/// Enough to recognise a value by.
-pub fn short(text: &str) -> String {
-    match text.char_indices().nth(60) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.into(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,14 +200,6 @@ mod tests {
             json_texts("")[0].split(':').next(),
             Some("line 1, column 1")
         );
-    }
-
-    #[test]
-    fn a_name_is_excused_by_a_part_of_it() {
-        let parts = ["rms".to_string()];
-        assert!(Difference::at("levels[0].rms_mm", "0", "1").excused(&parts));
-        assert!(!Difference::at("seed", "0", "1").excused(&parts));
-        assert!(!Difference::nameless("rms".into()).excused(&parts));
     }
 
     #[test]

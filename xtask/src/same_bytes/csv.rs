@@ -1,7 +1,6 @@
 //! Differences between two CSV files, by line and column.
 
-use super::Difference;
-use super::compare::short;
+use super::difference::{Difference, short};
 
 /// A column of both files.
 struct Column<'a> {

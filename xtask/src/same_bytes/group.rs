@@ -1,6 +1,6 @@
 //! What came out of a group of files, in a few lines.
 
-use super::Difference;
+use super::difference::Difference;
 
 /// Lines for the differences of a group, about.
 const LINES: usize = 10;

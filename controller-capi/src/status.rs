@@ -1,0 +1,31 @@
+//! What the library says besides a code.
+
+use crate::codes::StratumResult;
+
+/// A text buffer of this size holds every text.
+pub const STRATUM_TEXT_SIZE: usize = 512;
+
+/// What limited or degraded the last cycle.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StratumStatus {
+    /// The latched fault (STRATUM_FAULT_...), STRATUM_OK if there is none.
+    pub fault: StratumResult,
+    /// Joint or level of the fault, counted from 1; 0 where there is only one.
+    pub fault_index: u32,
+    /// The value that made the fault.
+    pub fault_value: f64,
+    /// Smallest value allowed.
+    pub fault_min: f64,
+    /// Largest value allowed.
+    pub fault_max: f64,
+    /// STRATUM_LIMIT_SATURATED: joints whose torque was cut to its limit, bit 0 is joint 1.
+    pub saturated: u32,
+    /// STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
+    /// leave no motion for them; bit 0 is the first row of level 1.
+    pub rank: u32,
+}
+
+/// sizeof(StratumStatus).
+pub const STRATUM_STATUS_SIZE: usize = 40;
+const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);

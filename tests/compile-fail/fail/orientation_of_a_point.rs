@@ -1,0 +1,8 @@
+//! A link has an orientation, a point has none.
+
+use controller_core::arm::LWR_IV_FLANGE;
+use controller_core::{Axes, Task, TaskGains};
+
+fn main() {
+    let _ = Task::orientation(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
+}
