@@ -1,10 +1,20 @@
 //! The robot's side of the loop on a PC: plant, contacts, experiments, reports.
 //!
-//! Bottom-up: [`plant`] is an arm that knows nothing of the controller;
-//! [`contact`] pushes it; [`scenario`] is an experiment as data;
-//! [`experiment`] closes the loop around `controller-core` with one of the
-//! [`controllers`]; [`metrics`], [`trace`] and [`summary`] say what happened;
-//! [`explain`] lays one cycle open; [`cli`] is the program.
+//! An experiment as data, errors and choices are in the crate `cell`, what is recorded of a
+//! cycle in the crate `record`: the controller's program has them too. Bottom-up:
+//!
+//! - [`plant`]: an arm that knows nothing of the controller; [`contact`] pushes it;
+//!   [`arm_points`]: where points and links are, by its geometry;
+//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`metrics`], [`trace`],
+//!   [`summary`], [`output`]: what happened, as figures and files;
+//! - [`robot`]: the robot controller of the FRI link; [`link`]: what may happen to datagrams;
+//!   [`loopback`]: robot and bridge in one process; [`serve`]: the robot on a socket or a
+//!   serial line;
+//! - [`controllers`]: the laws that are compared; [`experiment`]: the loop around
+//!   `controller-core` with one of them; [`explain`]: one cycle laid open;
+//! - [`report`]: the page and the figures of a run; [`paper`]: every experiment and claim of
+//!   the paper;
+//! - [`cli`]: the program.
 
 pub mod arm_points;
 pub mod cli;
