@@ -3,9 +3,10 @@
 use controller_core::joint::DOF;
 
 use super::plot::{Chart, LimitLine, Mark, Panel, Scale, Series, Stroke, Style};
+use super::run::Run;
+use super::scene;
 use super::svg::Svg;
 use super::ticks::plain;
-use super::{Run, scene};
 use crate::summary::Verdict;
 use cell::scenario::Metric;
 

@@ -6,8 +6,9 @@
 use std::io;
 use std::time::{Duration, Instant as Clock};
 
+use super::console::Operator;
+use super::service::{End, Service};
 use super::transport::{RESEND, Transport};
-use super::{End, Operator, Service};
 use crate::link::{Channel, Direction};
 use crate::robot::{MEASUREMENT_BYTES, Robot};
 use record::run::Sample;
