@@ -66,7 +66,7 @@ impl Service {
         let over = robot.has_never_commanded() && robot.robot_time_s() > self.wait_s;
         over.then(|| {
             let last = robot.events().last().map(|event| event.text.clone());
-            let quality = robot.quality().name();
+            let quality = format!("{:?}", robot.quality()).to_lowercase();
             let why = last.unwrap_or_else(|| format!("link quality {quality}"));
             End::NoClient(format!(
                 "no command state with {} within {} s: {why}",
