@@ -24,7 +24,7 @@ use controller_core::{Controller, Reference, TaskSet};
 use crate::doctor;
 use crate::realtime::Realtime;
 use crate::recorder::{self, Recorder};
-use crate::run::{Link, converse};
+use crate::run::{Endpoint, converse};
 use crate::stream::Stream;
 use crate::summary::Summary;
 
@@ -191,7 +191,7 @@ impl RunOptions {
         tell(realtime.line());
         tell(format_args!("waiting for the robot at {}", self.listen));
         let mut session = Session::new(config);
-        let mut link = Link {
+        let mut end = Endpoint {
             socket,
             peer: self.peer,
             wait,
@@ -203,7 +203,7 @@ impl RunOptions {
         let mut teller = Teller::new();
         let mut refused = None;
         let counts = converse(
-            &mut link,
+            &mut end,
             &mut session,
             &mut source,
             recorder.as_mut(),

@@ -18,7 +18,7 @@ use controller_core::task::trajectory::Rotation;
 use controller_core::{Reference, Target, TaskSet};
 use firmware_host::realtime::Realtime;
 use firmware_host::recorder;
-use firmware_host::run::{Link, converse};
+use firmware_host::run::{Endpoint, converse};
 use firmware_host::stream::{Setpoint, Stream};
 use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
@@ -335,7 +335,7 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     let served = scenario.clone();
     let server = thread::spawn(move || serve(&served, here));
     let (stop, tasks) = (AtomicBool::new(false), tasks(&scenario));
-    let mut link = Link {
+    let mut end = Endpoint {
         socket,
         peer: None,
         wait: Duration::from_secs(20),
@@ -346,14 +346,14 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     let mut session = session(&scenario);
     let mut source = Confused { origin: None };
     let mut cycles = Vec::new();
-    let counts = converse(&mut link, &mut session, &mut source, None, |_, cycle| {
+    let counts = converse(&mut end, &mut session, &mut source, None, |_, cycle| {
         cycles.push(*cycle);
     });
     let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
     let counts = counts.expect("a socket that works");
     let summary = counts.summary(&session, &scenario.name, &names, &Realtime::default());
     // The port closes, and with it the robot's end.
-    drop(link);
+    drop(end);
     server.join().expect("the robot");
 
     let name = FaultKind::WrongTarget.name();
