@@ -65,7 +65,7 @@ fn run(wish: &Wish<'_>) -> Run {
     let (mut cycles, mut phases) = (Vec::new(), Vec::new());
     loopback::run(&mut robot, &mut client, &faults, |instant, session| {
         let error_mm = instant.levels[0].error * 1e3;
-        cycles.push((instant.t_s, error_mm, (*instant.torque).into()));
+        cycles.push((instant.t_s, error_mm, instant.torque.into()));
         phases.push(session.phase());
         Ok(())
     })
