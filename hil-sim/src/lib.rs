@@ -3,18 +3,17 @@
 //! An experiment as data, errors and choices are in the crate `cell`, what is recorded of a
 //! cycle in the crate `record`: the controller's program has them too. Bottom-up:
 //!
-//! - [`plant`]: an arm that knows nothing of the controller; [`contact`] pushes it;
-//!   [`arm_points`]: where points and links are, by its geometry;
-//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`metrics`], [`trace`],
-//!   [`summary`], [`output`]: what happened, as figures and files;
+//! - [`plant`]: an arm that knows nothing of the controller; [`arm_points`]: where its points
+//!   and links are; [`contact`]: what pushes it;
+//! - [`controllers`]: the laws that are compared;
+//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`metrics`] and
+//!   [`summary`]: figures and verdict;
 //! - [`robot`]: the robot controller of the FRI link; [`link`]: what may happen to datagrams;
-//!   [`loopback`]: robot and bridge in one process; [`serve`]: the robot on a socket or a
-//!   serial line;
-//! - [`controllers`]: the laws that are compared; [`experiment`]: the loop around
-//!   `controller-core` with one of them; [`explain`]: one cycle laid open;
-//! - [`report`]: the page and the figures of a run; [`paper`]: every experiment and claim of
-//!   the paper;
-//! - [`cli`]: the program.
+//! - [`experiment`]: the loop around `controller-core` with one of the laws; [`loopback`]: the
+//!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
+//! - [`output`], [`trace`], [`report`]: the files of a run; [`paper`]: every experiment and
+//!   claim of the paper;
+//! - [`serve`]: the robot on a socket or a serial line; [`cli`]: the program.
 
 pub mod arm_points;
 pub mod cli;
