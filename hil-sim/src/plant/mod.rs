@@ -91,7 +91,7 @@ impl Plant {
     /// equilibrium with the arm's true weight.
     ///
     /// # Panics
-    /// More than [`DEAD_CYCLES_MAX`] dead cycles.
+    /// More than [`ranges::DEAD_CYCLES_MAX`](controller_core::ranges::DEAD_CYCLES_MAX) dead cycles.
     #[must_use]
     pub fn with_options(
         kind: PlantKind,

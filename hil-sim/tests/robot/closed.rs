@@ -8,6 +8,7 @@ use controller_core::joint::JointVector;
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Controller, Measurement, State};
 use fri::InterfaceState;
+use hil_sim::arm_points::origins;
 use hil_sim::link::{Expect, LockStep, Peer};
 use hil_sim::robot::{Robot, RobotOptions};
 use hil_sim::summary::Summary;
