@@ -4,7 +4,7 @@
 pub mod config;
 mod controller;
 mod data;
-mod delay;
+pub mod delay;
 mod inspection;
 pub mod measurement;
 pub mod observer;

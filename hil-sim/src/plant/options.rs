@@ -1,5 +1,6 @@
 //! What the plant can imitate beyond the reference behaviour.
 
+use controller_core::cycle::delay::Delay;
 use controller_core::joint::JointVector;
 use controller_core::ranges;
 
@@ -38,10 +39,9 @@ impl PlantOptions {
 /// cycles later.
 #[derive(Clone, Debug)]
 pub(crate) struct DeadTime {
-    /// The first `cycles` entries are a ring of the commands under way \[Nm\].
-    ring: [JointVector<f64>; DEAD_CYCLES_MAX],
-    cycles: usize,
-    next: usize,
+    sent: Delay<f64>,
+    cycles: u8,
+    before: JointVector<f64>,
 }
 
 impl DeadTime {
@@ -53,20 +53,15 @@ impl DeadTime {
             "{cycles} dead cycles; allowed: 0 to {DEAD_CYCLES_MAX}"
         );
         Self {
-            ring: [torque; DEAD_CYCLES_MAX],
-            cycles,
-            next: 0,
+            sent: Delay::new(),
+            cycles: cycles as u8,
+            before: torque,
         }
     }
 
     /// One cycle: takes this cycle's command \[Nm\], gives the one that arrives.
     pub fn pass(&mut self, command: &JointVector<f64>) -> JointVector<f64> {
-        if self.cycles == 0 {
-            return *command;
-        }
-        let arrived = core::mem::replace(&mut self.ring[self.next], *command);
-        self.next = (self.next + 1) % self.cycles;
-        arrived
+        self.sent.send(self.cycles, command, &self.before)
     }
 }
 
