@@ -92,9 +92,9 @@ fn task_error(run: &Run<'_>) -> Figure {
             Style::solid(index),
         );
         let title = if count == 1 {
-            "task error [mm]".to_string()
+            format!("task error [{}]", level.unit().suffix())
         } else {
-            format!("level {} [mm]", index + 1)
+            format!("level {} [{}]", index + 1, level.unit().suffix())
         };
         let mut panel = Panel::new(
             title,
