@@ -8,7 +8,7 @@
 //! - [`guide`]: from the wanted motion to the reference of a cycle, with
 //!   transitions that do not jump;
 //! - `wire`: what the session reads of a measurement and writes into an answer;
-//! - `link`: counters, and whether the link carries a motion;
+//! - `link_monitor`: counters, and whether the link carries a motion;
 //! - [`framing`]: datagrams on a serial line;
 //! - [`transport`]: the link under a session, and its form on a serial line;
 //! - `sent`: which of the torques sent acted on the arm;
@@ -28,7 +28,7 @@ extern crate std;
 pub mod audit;
 pub mod framing;
 pub mod guide;
-mod link;
+mod link_monitor;
 mod sent;
 pub mod session;
 pub mod transport;

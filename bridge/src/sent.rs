@@ -4,8 +4,9 @@
 //! So the bridge knows, also where commands are lost or late, what the robot has
 //! used since the last measurement, and can tell the observer.
 
+use controller_core::cycle::delay::Delay;
 use controller_core::joint::{JointVector, zeros};
-use controller_core::ranges::DEAD_CYCLES_MAX;
+use heapless::HistoryBuf;
 
 /// Commands remembered. One that was overtaken by more than this is too old to
 /// matter.
@@ -14,43 +15,35 @@ const MEMORY: usize = 32;
 /// Commands sent lately, and those that the robot had lately.
 #[derive(Clone, Debug)]
 pub(crate) struct SentTorques {
-    sent: [(u16, JointVector<f64>); MEMORY],
-    next: usize,
-    /// What the robot had at the last measurements, newest first.
-    received: [JointVector<f64>; DEAD_CYCLES_MAX as usize + 1],
+    sent: HistoryBuf<(u16, JointVector<f64>), MEMORY>,
+    /// What the robot had at the last measurements.
+    received: Delay<f64>,
 }
 
 impl SentTorques {
     /// Nothing sent: zero torque acts.
-    pub const fn new() -> Self {
+    pub fn new() -> Self {
         Self {
-            sent: [(0, zeros()); MEMORY],
-            next: 0,
-            received: [zeros(); DEAD_CYCLES_MAX as usize + 1],
+            // What a robot without a command mirrors is 0.
+            sent: HistoryBuf::new_with((0, zeros())),
+            received: Delay::new(),
         }
     }
 
     /// A command with this counter carries `torque` \[Nm\].
     pub fn send(&mut self, counter: u16, torque: JointVector<f64>) {
-        if let Some(entry) = self.sent.get_mut(self.next % MEMORY) {
-            *entry = (counter, torque);
-        }
-        self.next = (self.next + 1) % MEMORY;
+        self.sent.write((counter, torque));
     }
 
     /// The torque \[Nm\] that acted until the measurement that mirrors `reflected`,
     /// with `dead_cycles` cycles between the arrival of a command and its effect.
     /// A counter that was not sent lately counts as the last one sent.
     pub fn acted(&mut self, reflected: u16, dead_cycles: u8) -> JointVector<f64> {
-        let newest = self.sent.get((self.next + MEMORY - 1) % MEMORY);
         let mirrored = self.sent.iter().find(|(counter, _)| *counter == reflected);
-        let torque = mirrored.or(newest).map_or(zeros(), |(_, torque)| *torque);
-        self.received.rotate_right(1);
-        if let Some(first) = self.received.first_mut() {
-            *first = torque;
-        }
-        let acted = self.received.get(usize::from(dead_cycles));
-        *acted.unwrap_or(&torque)
+        let torque = mirrored
+            .or(self.sent.recent())
+            .map_or(zeros(), |(_, torque)| *torque);
+        self.received.send(dead_cycles, &torque, &zeros())
     }
 }
 

@@ -27,7 +27,7 @@ use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, St
 
 use crate::audit::Audit;
 use crate::guide::{Guide, ReferenceSource};
-use crate::link::Link;
+use crate::link_monitor::LinkMonitor;
 use crate::sent::SentTorques;
 use crate::wire::{Incoming, Outgoing, measured};
 
@@ -44,7 +44,7 @@ pub struct Session {
     velocity: VelocityEstimator<f64>,
     sent: SentTorques,
     guide: Guide,
-    link: Link,
+    link: LinkMonitor,
     phase: Phase,
     stop: Option<StopReason>,
     /// Whether it stops without braking first.
@@ -78,7 +78,7 @@ impl Session {
             velocity: VelocityEstimator::new(CORNER_HZ),
             sent: SentTorques::new(),
             guide,
-            link: Link::new(),
+            link: LinkMonitor::new(),
             phase: Phase::Waiting,
             stop: None,
             halted: false,

@@ -7,6 +7,7 @@
 //! the base-plate frame, z up.
 
 pub mod dynamics;
+mod exchange;
 pub mod kinematics;
 mod link;
 mod lwr_iv;

@@ -4,15 +4,17 @@
 pub mod config;
 mod controller;
 mod data;
-mod delay;
+pub mod delay;
 mod inspection;
 pub mod measurement;
 pub mod observer;
 pub mod record;
 pub mod stages;
+mod step;
 mod usable;
 pub mod velocity;
 
-pub use controller::{Controller, Step};
+pub use controller::Controller;
 pub use data::{Data, Input, State};
 pub use inspection::Inspection;
+pub use step::Step;

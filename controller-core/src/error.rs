@@ -3,12 +3,38 @@
 use core::fmt;
 
 use crate::arm::ArmError;
-use crate::gain::Gain;
 use crate::joint::DOF;
 use crate::ranges::{
     CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M,
 };
 use crate::real::Real;
+
+/// Which gain matrix an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Gain {
+    /// K_p of a task level.
+    TaskStiffness,
+    /// K_d of a task level.
+    TaskDamping,
+    /// K_q.
+    NullStiffness,
+    /// D.
+    NullDamping,
+}
+
+impl Gain {
+    /// Name and unit.
+    fn name(self) -> &'static str {
+        match self {
+            Self::TaskStiffness => "task stiffness [1/s2]",
+            Self::TaskDamping => "task damping [1/s]",
+            Self::NullStiffness => "null-space stiffness [Nm/rad]",
+            Self::NullDamping => "null-space damping [Nms/rad]",
+        }
+    }
+}
 
 /// Why a configuration is refused. Levels and joints count from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 //! held by gravity torque until the caller resets it. A *limit* that was active
 //! is a flag of one cycle; its torque is valid.
 //!
-//! Faults and limits have numbers that go over wires and into logs. [`numbers!`]
+//! Faults and limits have numbers that go over wires and into logs. [`crate::numbers!`]
 //! is the one list of them: the enumerations here, the names of the C interface and
 //! the tables of docs/architecture.md are made from it or held against it.
 

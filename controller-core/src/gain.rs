@@ -1,35 +1,8 @@
 //! Gain matrices as plain data, by rows, and the one check that all of them pass.
 
-use crate::error::ConfigError;
+use crate::error::{ConfigError, Gain};
 use crate::joint::DOF;
 use crate::ranges::GAIN_MAX;
-
-/// Which gain matrix an error is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Gain {
-    /// K_p of a task level.
-    TaskStiffness,
-    /// K_d of a task level.
-    TaskDamping,
-    /// K_q.
-    NullStiffness,
-    /// D.
-    NullDamping,
-}
-
-impl Gain {
-    /// Name and unit.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::TaskStiffness => "task stiffness [1/s2]",
-            Self::TaskDamping => "task damping [1/s]",
-            Self::NullStiffness => "null-space stiffness [Nm/rad]",
-            Self::NullDamping => "null-space damping [Nms/rad]",
-        }
-    }
-}
 
 /// A diagonal matrix by rows: the usual form of stiffness and damping.
 #[must_use]

@@ -11,20 +11,20 @@ use std::time::Duration;
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
+use cell::arguments::usage;
+use cell::arguments::values::{address, dead_cycles, number, peer, processor};
+use cell::invalid::{Invalid, in_range, positive};
+use cell::names::{Named, NullStiffness};
+use cell::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
+use cell::terminal::{print, tell};
 use clap::{Args, Parser, Subcommand};
 use controller_core::joint::JointVector;
 use controller_core::{Controller, Reference, TaskSet};
-use hil_sim::cli::usage;
-use hil_sim::cli::values::{address, dead_cycles, number, peer, processor};
-use hil_sim::invalid::{Invalid, in_range, positive};
-use hil_sim::names::{Named, NullStiffness};
-use hil_sim::scenario::{DURATION_MAX_S, Scenario, ScenarioSource};
-use hil_sim::terminal::{print, tell};
 
 use crate::doctor;
 use crate::realtime::Realtime;
 use crate::recorder::{self, Recorder};
-use crate::run::{Link, converse};
+use crate::run::{Endpoint, converse};
 use crate::stream::Stream;
 use crate::summary::Summary;
 
@@ -191,7 +191,7 @@ impl RunOptions {
         tell(realtime.line());
         tell(format_args!("waiting for the robot at {}", self.listen));
         let mut session = Session::new(config);
-        let mut link = Link {
+        let mut end = Endpoint {
             socket,
             peer: self.peer,
             wait,
@@ -203,7 +203,7 @@ impl RunOptions {
         let mut teller = Teller::new();
         let mut refused = None;
         let counts = converse(
-            &mut link,
+            &mut end,
             &mut session,
             &mut source,
             recorder.as_mut(),
@@ -406,11 +406,10 @@ impl Flight {
         self.cycles.push_back(*cycle);
     }
 
-    fn csv(&self) -> String {
-        let mut text = recorder::header();
-        self.cycles
-            .iter()
-            .for_each(|cycle| text += &recorder::row(cycle));
+    fn csv(&self) -> Vec<u8> {
+        let mut text = Vec::new();
+        // Writing to memory does not fail.
+        let _ = recorder::write_rows(&mut text, self.cycles.iter().copied());
         text
     }
 }

@@ -1,6 +1,7 @@
 //! The controller core on a PC, linked to a robot by KUKA's FRI over UDP.
 //!
-//! All that is here is around the conversation, which is in the `bridge` crate:
+//! All that is here is around the conversation, which is in the `bridge` crate. Scenario
+//! files are those of `cell`, rows of a record those of `record`; no simulator is linked.
 //!
 //! - [`cli`]: the command line;
 //! - [`run`]: the socket loop: one datagram in, one out;

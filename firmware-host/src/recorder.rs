@@ -8,7 +8,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use bridge::session::CycleReport;
-use controller_core::joint::DOF;
+use record::csv::Row;
+use record::session::CHANNELS;
 
 /// Cycles that fit into the queue: 8 s at 2 ms.
 const QUEUE: usize = 4096;
@@ -66,55 +67,24 @@ fn write_all(path: &Path, cycles: &Receiver<CycleReport>) -> io::Result<()> {
         return Ok(());
     };
     let mut file = BufWriter::new(File::create(path)?);
-    file.write_all(header().as_bytes())?;
-    for cycle in std::iter::once(first).chain(cycles) {
-        file.write_all(row(&cycle).as_bytes())?;
-    }
+    write_rows(&mut file, std::iter::once(first).chain(cycles))?;
     file.flush()
 }
 
-/// Names of the columns.
-#[must_use]
-pub fn header() -> String {
-    let mut line = String::from("counter,lost,phase,state,quality,t");
-    for name in ["q", "dq", "tau", "sent", "r"] {
-        for joint in 1..=DOF {
-            line += &format!(",{name}{joint}");
-        }
+/// Writes a header, and a row per cycle.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_rows(
+    out: &mut impl Write,
+    cycles: impl Iterator<Item = CycleReport>,
+) -> io::Result<()> {
+    let mut row = Row::default();
+    row.names(CHANNELS, 0, &[]);
+    row.finish(out)?;
+    for cycle in cycles {
+        row.values(CHANNELS, &cycle);
+        row.finish(out)?;
     }
-    line + ",fault,saturated,rank\n"
-}
-
-/// One cycle: SI units, 17 significant digits; torque and residual are empty where
-/// the controller did not run.
-#[must_use]
-pub fn row(cycle: &CycleReport) -> String {
-    let mut line = format!(
-        "{},{},{},{:?},{:?},{:.16e}",
-        cycle.counter,
-        cycle.lost,
-        cycle.phase.name(),
-        cycle.robot.state,
-        cycle.robot.quality,
-        cycle.t_s
-    );
-    let step = cycle.step.as_ref();
-    let vectors = [
-        Some(&cycle.joints.q),
-        Some(&cycle.joints.dq),
-        step.map(|step| &step.torque),
-        Some(&cycle.sent),
-        step.map(|step| &step.residual),
-    ];
-    for vector in vectors {
-        for joint in 0..DOF {
-            match vector {
-                Some(vector) => line += &format!(",{:.16e}", vector[joint]),
-                None => line.push(','),
-            }
-        }
-    }
-    let status = step.map(|step| step.status).unwrap_or_default();
-    let fault = status.fault.map_or(0, |fault| fault.kind.number());
-    line + &format!(",{fault},{},{}\n", status.saturated.0, status.rank.0)
+    Ok(())
 }

@@ -24,9 +24,9 @@ const BUFFER: usize = 2048;
 /// How often the loop looks up while nothing arrives.
 const LOOK_UP: Duration = Duration::from_millis(20);
 
-/// What the loop needs besides a session.
+/// Our end of the conversation: all that the loop needs besides a session.
 #[derive(Debug)]
-pub struct Link<'a> {
+pub struct Endpoint<'a> {
     /// Bound to where the robot sends.
     pub socket: UdpSocket,
     /// The only address that is answered; the first that sends a measurement if
@@ -76,7 +76,7 @@ struct Tracking {
 /// # Errors
 /// The socket fails.
 pub fn converse(
-    link: &mut Link<'_>,
+    end: &mut Endpoint<'_>,
     session: &mut Session,
     source: &mut impl ReferenceSource,
     mut recorder: Option<&mut Recorder>,
@@ -85,15 +85,15 @@ pub fn converse(
     let mut counts = Counts::default();
     let (mut bytes, mut answer) = ([0; BUFFER], [0; ANSWER_LEN]);
     let mut heard = Instant::now();
-    link.socket.set_read_timeout(Some(LOOK_UP))?;
+    end.socket.set_read_timeout(Some(LOOK_UP))?;
     loop {
-        if link.stop.load(Ordering::Relaxed) {
+        if end.stop.load(Ordering::Relaxed) {
             session.stop();
         }
-        match link.socket.recv_from(&mut bytes) {
+        match end.socket.recv_from(&mut bytes) {
             Ok((length, from)) => {
                 let begin = Instant::now();
-                let stranger = link.peer.is_some_and(|peer| peer != from);
+                let stranger = end.peer.is_some_and(|peer| peer != from);
                 let datagram = bytes.get(..length).unwrap_or(&bytes);
                 let outcome = if stranger {
                     None
@@ -104,14 +104,14 @@ pub fn converse(
                 match outcome {
                     None => counts.link.strangers += 1,
                     Some(Outcome::Answered) => {
-                        link.socket.send_to(&answer, from)?;
+                        end.socket.send_to(&answer, from)?;
                         let latency = begin.elapsed();
                         heard = begin;
-                        link.peer = Some(from);
+                        end.peer = Some(from);
                         counts.compute.add(computed);
                         counts.latency.add(latency);
                         if let Some(cycle) = session.last() {
-                            counts.add(session, cycle, &link.tasks);
+                            counts.add(session, cycle, &end.tasks);
                             if let Some(recorder) = &mut recorder {
                                 recorder.push(cycle);
                             }
@@ -135,8 +135,8 @@ pub fn converse(
         }
         // Looked at after every datagram: strangers that go on sending are no robot.
         let patience = match session.phase() {
-            Phase::Waiting => link.wait,
-            _ => link.silence,
+            Phase::Waiting => end.wait,
+            _ => end.silence,
         };
         let silence = heard.elapsed();
         let stopped = session.stop_reason().is_some();

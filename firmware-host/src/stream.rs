@@ -24,14 +24,14 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
 use bridge::guide::ReferenceSource;
+use cell::invalid::in_range;
+use cell::terminal::tell;
 use controller_core::arm::LWR_IV_POINTS;
 use controller_core::joint::{DOF, Vector3};
 use controller_core::ranges::{MAX_LEVELS, QUATERNION_NORMS};
 use controller_core::task::Tracked;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Reference, Target, Task, TaskSet};
-use hil_sim::invalid::in_range;
-use hil_sim::terminal::tell;
 
 /// References that wait for the loop.
 const QUEUE: usize = 64;

@@ -6,11 +6,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use cell::names::PlantKind;
+use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::recorder::Recorder;
-use firmware_host::run::{Link, converse};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use firmware_host::run::{Endpoint, converse};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{Scenario, ScenarioSource};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
@@ -77,7 +78,7 @@ fn the_loop_takes_no_memory_after_the_start() {
         .controller_config(0)
         .expect("a good scenario")
         .tasks;
-    let mut link = Link {
+    let mut end = Endpoint {
         socket,
         peer: None,
         wait: Duration::from_secs(5),
@@ -88,7 +89,7 @@ fn the_loop_takes_no_memory_after_the_start() {
     let (mut session, mut source) = (session(&scenario), ScenarioSource::new(&scenario));
     let mut region = Region::new(MEMORY);
     let (mut seen, mut moving, mut taken) = (0, 0, 0);
-    converse(&mut link, &mut session, &mut source, None, |_, cycle| {
+    converse(&mut end, &mut session, &mut source, None, |_, cycle| {
         seen += 1;
         moving += usize::from(cycle.phase == Phase::Moving);
         if seen == 10 {

@@ -6,13 +6,14 @@ use std::thread;
 use std::time::Duration;
 
 use bridge::session::Session;
+use cell::names::PlantKind;
+use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::realtime::Realtime;
-use firmware_host::run::{Link, converse};
+use firmware_host::run::{Endpoint, converse};
 use firmware_host::summary::Summary;
 use hil_sim::loopback::{self, BridgeClient};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{Scenario, ScenarioSource};
 use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 
@@ -78,7 +79,7 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
     let stop = AtomicBool::new(false);
     let config = scenario.session_config(0, scenario.duration_s);
     let config = config.expect("a good scenario");
-    let mut link = Link {
+    let mut end = Endpoint {
         socket,
         peer: None,
         wait: Duration::from_secs(20),
@@ -88,7 +89,7 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
     };
     let mut session = Session::new(config);
     let mut source = ScenarioSource::new(scenario);
-    let counts = converse(&mut link, &mut session, &mut source, None, |_, _| {});
+    let counts = converse(&mut end, &mut session, &mut source, None, |_, _| {});
     let names = ["flange".to_string()];
     let summary = counts.expect("a socket that works").summary(
         &session,

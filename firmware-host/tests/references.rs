@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use cell::names::PlantKind;
+use cell::scenario::{ReferenceSpec, Scenario, TaskSpec};
 use controller_core::fault::FaultKind;
 use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
@@ -16,11 +18,10 @@ use controller_core::task::trajectory::Rotation;
 use controller_core::{Reference, Target, TaskSet};
 use firmware_host::realtime::Realtime;
 use firmware_host::recorder;
-use firmware_host::run::{Link, converse};
+use firmware_host::run::{Endpoint, converse};
 use firmware_host::stream::{Setpoint, Stream};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{ReferenceSpec, Scenario, TaskSpec};
 
 /// Longer than any of these runs.
 const NEVER: Duration = Duration::from_secs(600);
@@ -334,7 +335,7 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     let served = scenario.clone();
     let server = thread::spawn(move || serve(&served, here));
     let (stop, tasks) = (AtomicBool::new(false), tasks(&scenario));
-    let mut link = Link {
+    let mut end = Endpoint {
         socket,
         peer: None,
         wait: Duration::from_secs(20),
@@ -344,15 +345,15 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     };
     let mut session = session(&scenario);
     let mut source = Confused { origin: None };
-    let mut rows = Vec::new();
-    let counts = converse(&mut link, &mut session, &mut source, None, |_, cycle| {
-        rows.push(recorder::row(cycle));
+    let mut cycles = Vec::new();
+    let counts = converse(&mut end, &mut session, &mut source, None, |_, cycle| {
+        cycles.push(*cycle);
     });
     let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
     let counts = counts.expect("a socket that works");
     let summary = counts.summary(&session, &scenario.name, &names, &Realtime::default());
     // The port closes, and with it the robot's end.
-    drop(link);
+    drop(end);
     server.join().expect("the robot");
 
     let name = FaultKind::WrongTarget.name();
@@ -365,9 +366,13 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     for level in &summary.levels {
         assert!(level.max.is_some_and(|max| max < 1.0), "{level:?}");
     }
-    let fault = format!(",{},0,0\n", FaultKind::WrongTarget.number());
+    let mut record = Vec::new();
+    recorder::write_rows(&mut record, cycles.into_iter()).expect("memory");
+    let record = String::from_utf8(record).expect("text");
+    let rows: Vec<_> = record.lines().skip(1).collect();
+    let fault = format!(",{},0,0", FaultKind::WrongTarget.number());
     let faults = rows.iter().filter(|row| row.ends_with(&fault)).count();
-    let clear = rows.iter().filter(|row| row.ends_with(",0,0,0\n")).count();
+    let clear = rows.iter().filter(|row| row.ends_with(",0,0,0")).count();
     assert!(faults > 0 && clear > 250, "{faults} {clear}");
     assert_eq!(faults + clear, rows.len());
 }

@@ -1,15 +1,15 @@
 //! The log of the self-test: what went into every cycle and which torque came
 //! out, to the last bit.
 //!
-//! A file is a sequence of runs. A run is a header of eight bytes, `STRM`, job
-//! number, bytes per number (8 or 4) and the number of cycles as u16, and then per
+//! A file is a sequence of runs. A run is a header of eight bytes, `STRM`, number
+//! of the scenario, bytes per number (8 or 4) and the number of cycles as u16, and then per
 //! cycle q, dq, h and the torque: 22 numbers, little endian.
 
 use controller_core::joint::{DOF, JointVector};
 use controller_core::real::Real;
 use controller_core::{Measurement, State};
 
-use crate::job::{Job, JobKind};
+use crate::scenario::{FixedScenario, ReadyScenario};
 
 /// Numbers per cycle.
 pub const NUMBERS: usize = 3 * DOF + 1;
@@ -60,8 +60,8 @@ impl Number for f32 {
 /// Where a run begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// Which experiment.
-    pub job: JobKind,
+    /// Which scenario.
+    pub scenario: FixedScenario,
     /// 8 or 4.
     pub bytes: u8,
     /// How many cycles follow.
@@ -74,17 +74,17 @@ impl Header {
     pub fn encode(self) -> [u8; HEADER_BYTES] {
         let [m0, m1, m2, m3] = MAGIC;
         let [low, high] = self.cycles.to_le_bytes();
-        [m0, m1, m2, m3, self.job as u8, self.bytes, low, high]
+        [m0, m1, m2, m3, self.scenario as u8, self.bytes, low, high]
     }
 
     /// From its bytes; none where they are no header.
     #[must_use]
     pub fn decode(bytes: [u8; HEADER_BYTES]) -> Option<Self> {
-        let [m0, m1, m2, m3, job, size, low, high] = bytes;
-        let job = JobKind::from_number(job)?;
+        let [m0, m1, m2, m3, number, size, low, high] = bytes;
+        let scenario = FixedScenario::from_number(number)?;
         let known = [m0, m1, m2, m3] == MAGIC && (size == 8 || size == 4);
         known.then_some(Self {
-            job,
+            scenario,
             bytes: size,
             cycles: u16::from_le_bytes([low, high]),
         })
@@ -163,7 +163,7 @@ pub struct Comparison {
 /// Runs the controller over `cycles` entries and compares every torque with the
 /// log. `next` gives the bytes of an entry, none at the end of the file.
 pub fn replay<T: Number>(
-    job: &Job<T>,
+    ready: &ReadyScenario<T>,
     cycles: u16,
     mut next: impl FnMut() -> Option<[u8; CYCLE_BYTES]>,
 ) -> Comparison {
@@ -172,8 +172,8 @@ pub fn replay<T: Number>(
     for cycle in 0..cycles {
         let Some(bytes) = next() else { break };
         let entry = Entry::<T>::decode(&bytes);
-        let reference = job.reference(u32::from(cycle));
-        let step = (job.controller).step(&mut state, &entry.measurement, &reference);
+        let reference = ready.reference(u32::from(cycle));
+        let step = (ready.controller).step(&mut state, &entry.measurement, &reference);
         result.cycles += 1;
         result.faults += u16::from(step.status.fault.is_some());
         for (joint, (found, expected)) in (1..).zip(step.torque.iter().zip(&entry.torque)) {

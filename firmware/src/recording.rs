@@ -3,13 +3,15 @@
 
 use std::io::{self, Write};
 
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use controller_core::joint::JointState;
 use controller_core::{Measurement, State};
-use hil_sim::plant::{Plant, PlantKind, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::contact::Contacts;
+use hil_sim::plant::{Plant, PlantOptions};
 
-use crate::job::{CYCLE_S, Job, JobKind};
 use crate::log::{Entry, Header, Number};
+use crate::scenario::{CYCLE_S, FixedScenario, ReadyScenario};
 
 /// Seed of mismatch and noise.
 const SEED: u64 = 1;
@@ -18,21 +20,25 @@ const SEED: u64 = 1;
 ///
 /// # Errors
 /// Those of the writer, and a cycle with a fault, of which there is none.
-pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) -> io::Result<()> {
-    let job = Job::<T>::new(kind).map_err(io::Error::other)?;
-    let scenario = Scenario::find(kind.name()).map_err(io::Error::other)?;
-    let mut contacts = scenario.contacts();
+pub fn write_run<T: Number>(
+    out: &mut impl Write,
+    scenario: FixedScenario,
+    cycles: u16,
+) -> io::Result<()> {
+    let ready = ReadyScenario::<T>::new(scenario).map_err(io::Error::other)?;
+    let built_in = Scenario::find(scenario.name()).map_err(io::Error::other)?;
+    let mut contacts = Contacts::of(&built_in);
     let mut plant = Plant::with_options(
         PlantKind::Realistic,
-        scenario.arm(),
-        scenario.start(),
+        built_in.arm(),
+        built_in.start(),
         CYCLE_S,
         SEED,
         PlantOptions::default(),
     );
     let mut state = State::new();
     let header = Header {
-        job: kind,
+        scenario,
         bytes: T::BYTES as u8,
         cycles,
     };
@@ -46,8 +52,8 @@ pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) ->
             dq: dq.map(T::from_f64),
             interval_s: T::from_f64(CYCLE_S),
         };
-        let reference = job.reference(u32::from(cycle));
-        let step = job.controller.step(&mut state, &measurement, &reference);
+        let reference = ready.reference(u32::from(cycle));
+        let step = ready.controller.step(&mut state, &measurement, &reference);
         if let Some(fault) = step.status.fault {
             return Err(io::Error::other(std::format!("cycle {cycle}: {fault}")));
         }
@@ -65,14 +71,14 @@ pub fn write_run<T: Number>(out: &mut impl Write, kind: JobKind, cycles: u16) ->
     Ok(())
 }
 
-/// Writes both jobs in both precisions.
+/// Writes both scenarios in both precisions.
 ///
 /// # Errors
 /// As [`write_run`].
 pub fn write_log(out: &mut impl Write, cycles: u16) -> io::Result<()> {
-    for kind in JobKind::ALL {
-        write_run::<f64>(out, kind, cycles)?;
-        write_run::<f32>(out, kind, cycles)?;
+    for scenario in FixedScenario::ALL {
+        write_run::<f64>(out, scenario, cycles)?;
+        write_run::<f32>(out, scenario, cycles)?;
     }
     Ok(())
 }

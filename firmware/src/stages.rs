@@ -11,11 +11,9 @@ use controller_core::cycle::{Data, Input};
 use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Reference, State, Step};
 
+use crate::interlocked_controller::RECORDED;
 use crate::log::Number;
 use crate::workload;
-
-/// Cycles in the recorder of the measurement.
-pub const RECORDED: usize = 64;
 
 /// A free-running counter, and how much of it an instruction is.
 pub trait Clock {

@@ -7,7 +7,7 @@ use controller_core::ranges::{POSITION_MARGIN, SPEED_FACTOR};
 use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Reference, Target};
 
-use crate::job::CYCLE_S;
+use crate::scenario::CYCLE_S;
 
 /// The kinds of inputs and how many there are of each.
 pub const KINDS: [(Kind, u32); 7] = [

@@ -1,17 +1,17 @@
 //! The log holds every bit, and the replay finds the one that differs.
 
 use controller_core::Measurement;
-use firmware::job::{Job, JobKind};
 use firmware::log::{CYCLE_BYTES, Entry, HEADER_BYTES, Header, NUMBERS, Number, replay};
 use firmware::recording::write_run;
+use firmware::scenario::{FixedScenario, ReadyScenario};
 
 const CYCLES: u16 = 300;
 
 #[test]
 fn headers_and_entries_come_back() {
-    for (job, bytes) in [(JobKind::TwoLevel, 8), (JobKind::Case1, 4)] {
+    for (scenario, bytes) in [(FixedScenario::TwoLevel, 8), (FixedScenario::Case1, 4)] {
         let header = Header {
-            job,
+            scenario,
             bytes,
             cycles: 0xabcd,
         };
@@ -39,9 +39,9 @@ fn headers_and_entries_come_back() {
     entry::<f32>();
 }
 
-fn recorded<T: Number>(kind: JobKind) -> Vec<u8> {
+fn recorded<T: Number>(scenario: FixedScenario) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_run::<T>(&mut bytes, kind, CYCLES).expect("a clean run");
+    write_run::<T>(&mut bytes, scenario, CYCLES).expect("a clean run");
     assert_eq!(
         bytes.len(),
         HEADER_BYTES + usize::from(CYCLES) * NUMBERS * T::BYTES
@@ -58,16 +58,16 @@ fn entries<T: Number>(bytes: &[u8]) -> impl FnMut() -> Option<[u8; CYCLE_BYTES]>
     }
 }
 
-fn replays<T: Number>(kind: JobKind) {
-    let job = Job::<T>::new(kind).expect("a valid job");
-    let mut bytes = recorded::<T>(kind);
-    let same = replay(&job, CYCLES, entries::<T>(&bytes));
+fn replays<T: Number>(scenario: FixedScenario) {
+    let ready = ReadyScenario::<T>::new(scenario).expect("a valid scenario");
+    let mut bytes = recorded::<T>(scenario);
+    let same = replay(&ready, CYCLES, entries::<T>(&bytes));
     assert_eq!((same.cycles, same.bits, same.faults), (CYCLES, 0, 0));
 
     // Two bits of the torque of joint 3 in cycle 200.
     let number = 200 * NUMBERS + 15 + 2;
     bytes[HEADER_BYTES + number * T::BYTES] ^= 0b101;
-    let damaged = replay(&job, CYCLES, entries::<T>(&bytes));
+    let damaged = replay(&ready, CYCLES, entries::<T>(&bytes));
     assert_eq!(damaged.bits, 2);
     let first = damaged.first.expect("a difference");
     assert_eq!((first.cycle, first.joint), (200, 3));
@@ -75,13 +75,13 @@ fn replays<T: Number>(kind: JobKind) {
 
     // A file that ends early is noticed by its cycles.
     let half = bytes.len() / 2;
-    assert!(replay(&job, CYCLES, entries::<T>(&bytes[..half])).cycles < CYCLES);
+    assert!(replay(&ready, CYCLES, entries::<T>(&bytes[..half])).cycles < CYCLES);
 }
 
 #[test]
 fn a_replay_finds_exactly_what_differs() {
-    for kind in JobKind::ALL {
-        replays::<f64>(kind);
-        replays::<f32>(kind);
+    for scenario in FixedScenario::ALL {
+        replays::<f64>(scenario);
+        replays::<f32>(scenario);
     }
 }

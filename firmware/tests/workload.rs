@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
-use firmware::job::{JobKind, controller};
 use firmware::log::Number;
+use firmware::scenario::{FixedScenario, controller};
 use firmware::stages::{Clock, Rig, Survey, survey};
 use firmware::workload::{COUNT, KINDS, Kind, input};
 
@@ -22,16 +22,16 @@ impl Clock for Reading {
     }
 }
 
-fn surveyed<T: Number>(kind: JobKind) -> Survey {
-    let mut rig = Rig::new(controller::<T>(kind).expect("a valid job"));
+fn surveyed<T: Number>(scenario: FixedScenario) -> Survey {
+    let mut rig = Rig::new(controller::<T>(scenario).expect("a valid scenario"));
     survey(&mut rig, &Reading::default(), Rig::cycle)
 }
 
 #[test]
 fn every_input_is_believed_and_some_are_hard() {
     const { assert!(COUNT > 2000) };
-    for kind in JobKind::ALL {
-        for found in [surveyed::<f64>(kind), surveyed::<f32>(kind)] {
+    for scenario in FixedScenario::ALL {
+        for found in [surveyed::<f64>(scenario), surveyed::<f32>(scenario)] {
             assert_eq!(found.faults, 0);
             assert!(found.saturated > 500 && found.saturated < COUNT - 200);
             assert!(found.deficient > 20);
@@ -40,8 +40,8 @@ fn every_input_is_believed_and_some_are_hard() {
         }
     }
     assert_ne!(
-        surveyed::<f64>(JobKind::TwoLevel).checksum,
-        surveyed::<f64>(JobKind::Case1).checksum
+        surveyed::<f64>(FixedScenario::TwoLevel).checksum,
+        surveyed::<f64>(FixedScenario::Case1).checksum
     );
 }
 
@@ -59,7 +59,7 @@ fn kinds_follow_each_other() {
 
 #[test]
 fn corners_are_all_different() {
-    let controller = controller::<f64>(JobKind::TwoLevel).expect("a valid job");
+    let controller = controller::<f64>(FixedScenario::TwoLevel).expect("a valid scenario");
     let corners = (2000..2128).map(|index| {
         let (measurement, _) = input(&controller, index);
         measurement.q.map(|x| u8::from(x > 0.0)).data.0[0]

@@ -3,8 +3,6 @@
 mod files;
 mod run;
 mod serve;
-pub mod usage;
-pub mod values;
 
 use std::io::{self, IsTerminal, Read};
 use std::path::PathBuf;
@@ -13,15 +11,13 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::explain::explain;
-use crate::invalid::Invalid;
-use crate::scenario::Scenario;
-use crate::terminal::{print, tell};
+use cell::arguments::usage::{self, USAGE};
+use cell::invalid::Invalid;
+use cell::scenario::Scenario;
+use cell::terminal::{print, tell};
 
 pub use run::RunOptions;
 pub use serve::ServeOptions;
-
-/// Exit code of anything that cannot be used.
-const USAGE: u8 = 2;
 
 /// Hardware-in-the-loop simulation of strict-priority torque control on a
 /// 7-joint arm.

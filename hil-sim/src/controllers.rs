@@ -10,7 +10,7 @@ use controller_core::law::motion::MotionSplit;
 use controller_core::linalg::Cholesky;
 use controller_core::ranges::MAX_ROWS;
 
-use crate::names::Named;
+use cell::names::Named;
 
 /// A torque law by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub struct LawGains {
 
 /// A law's demand, split by priority.
 #[derive(Clone, Debug)]
-pub struct Decision {
+pub struct SplitDemand {
     /// Coordinates of the demand less C dq + g and the compensation that no
     /// level owns: task rows in priority order, then the null space.
     coordinates: JointVector<f64>,
@@ -70,7 +70,7 @@ pub struct Decision {
     compensation: JointVector<f64>,
 }
 
-impl Decision {
+impl SplitDemand {
     /// The demanded torque \[Nm\].
     #[must_use]
     pub fn demand(&self, dynamics: &Dynamics<f64>) -> TorqueDemand<f64> {
@@ -102,10 +102,10 @@ impl Decision {
 impl ControllerKind {
     /// What this law decides.
     #[must_use]
-    pub fn decide(self, data: &Data<f64>, gains: &LawGains) -> Decision {
+    pub fn decide(self, data: &Data<f64>, gains: &LawGains) -> SplitDemand {
         match self {
-            Self::Hierarchical => Decision::levels(data, &data.control, data.residual()),
-            Self::NoObserver => Decision::levels(data, &data.control, &JointVector::zeros()),
+            Self::Hierarchical => SplitDemand::levels(data, &data.control, data.residual()),
+            Self::NoObserver => SplitDemand::levels(data, &data.control, &JointVector::zeros()),
             Self::Literal => literal(data, data.control.null_force),
             Self::AsPrinted => {
                 let stiffness = gains.stiffness * (data.posture - data.joints.q);
@@ -132,7 +132,7 @@ impl ControllerKind {
     }
 }
 
-impl Decision {
+impl SplitDemand {
     /// The product's law with `residual` compensated on the tasks.
     fn levels(data: &Data<f64>, control: &Control<f64>, residual: &JointVector<f64>) -> Self {
         let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
@@ -147,7 +147,7 @@ impl Decision {
 
 /// (34) as printed: every level is given d(Jbar_i dq)/dt = its command, as if
 /// the levels above it stood still.
-fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> Decision {
+fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> SplitDemand {
     let mut acceleration = data.rows.commanded;
     for (acceleration, bias) in acceleration.iter_mut().zip(jbar_dot_dq(data)) {
         *acceleration -= bias;
@@ -156,7 +156,7 @@ fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> Decision {
         task_acceleration: data.hierarchy.solve_uncoupled(&acceleration),
         null_force,
     };
-    Decision::levels(data, &control, data.residual())
+    SplitDemand::levels(data, &control, data.residual())
 }
 
 /// (dJbar_i/dt) dq per row \[m/s2\].
@@ -202,13 +202,13 @@ fn acceleration_level(
     data: &Data<f64>,
     gains: &LawGains,
     compensation: JointVector<f64>,
-) -> Decision {
+) -> SplitDemand {
     let mut hierarchy = Hierarchy::new();
     hierarchy.update(&data.rows, &Cholesky::identity());
     let tasks = hierarchy.solve(&data.rows.acceleration());
     let braking = -gains.rate.component_mul(&data.joints.dq);
     let null = hierarchy.null_part(&hierarchy.rotate(&braking));
-    Decision {
+    SplitDemand {
         coordinates: tasks + null,
         hierarchy,
         accelerations: true,

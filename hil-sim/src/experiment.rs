@@ -1,28 +1,25 @@
 //! One run: plant, controller and contacts in lock-step, in this process.
 
-mod level;
-
 use std::io;
 
 use bridge::session::SessionConfig;
 use controller_core::cycle::Data;
 use controller_core::joint::{JointState, JointVector};
-use controller_core::ranges::SPEED_FACTOR;
-use controller_core::{Controller, Fault, Measurement, State};
+use controller_core::{Controller, Measurement, State};
 
+use crate::arm_points::origins;
 use crate::contact::Contacts;
-use crate::controllers::{ControllerKind, Decision, LawGains};
-use crate::invalid::Invalid;
+use crate::controllers::{ControllerKind, LawGains, SplitDemand};
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::{FaultCounts, Metrics};
-use crate::names::{MeasurementKind, Named, NullStiffness};
-use crate::plant::{Plant, PlantKind, PlantModel, PlantOptions};
+use crate::plant::{Plant, PlantOptions};
 use crate::robot::{Robot, RobotOptions, RobotSetup};
-use crate::scenario::Scenario;
+use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{self, Conditions, Summary, Verdict};
-
-pub use level::LevelInstant;
-pub(crate) use level::{Places, angular_velocity};
+use cell::invalid::Invalid;
+use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind};
+use cell::scenario::Scenario;
+use record::run::Sample;
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]
@@ -45,42 +42,16 @@ pub struct Experiment {
     pub options: PlantOptions,
 }
 
-/// One cycle of a run, as it is recorded.
-pub struct Instant<'a> {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// True joint state.
-    pub state: &'a JointState<f64>,
-    /// Torque that acts from now on for a cycle \[Nm\].
-    pub torque: &'a JointVector<f64>,
-    /// r \[Nm\].
-    pub residual: &'a JointVector<f64>,
-    /// Whether a torque was cut to its limit.
-    pub saturated: bool,
-    /// Whether a task row could not be resolved.
-    pub rank: bool,
-    /// True tau_ext of (6) \[Nm\]: minus the joint torque of the contacts.
-    pub tau_ext: &'a JointVector<f64>,
-    /// Largest force of a hand \[N\].
-    pub hand_force_n: f64,
-    /// |R_kk| per task row; empty where it is not known.
-    pub conditioning: &'a [f64],
-    /// Every level, highest priority first.
-    pub levels: &'a [LevelInstant],
-    /// The arm.
-    pub plant: &'a PlantModel,
-}
-
 /// What the control cycle knew beyond its result.
 #[derive(Default)]
-struct Insight {
+struct PriorityView {
     conditioning: Vec<f64>,
     /// Torque asked for below each level \[Nm\].
     below: Vec<JointVector<f64>>,
 }
 
-impl Insight {
-    fn new(data: &Data<f64>, decision: &Decision) -> Self {
+impl PriorityView {
+    fn new(data: &Data<f64>, decision: &SplitDemand) -> Self {
         let hierarchy = &data.hierarchy;
         Self {
             conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
@@ -89,13 +60,6 @@ impl Insight {
                 .collect(),
         }
     }
-}
-
-/// Why a run ended early.
-#[derive(Clone, Debug)]
-enum Stop {
-    Safety(String),
-    Fault(Fault),
 }
 
 impl Experiment {
@@ -130,7 +94,7 @@ impl Experiment {
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
-        mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+        mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         let config = self.session().map_err(io::Error::other)?;
@@ -161,7 +125,7 @@ impl Experiment {
     pub fn run(
         &self,
         controller: &Controller<f64>,
-        mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+        mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         if self.measurement == MeasurementKind::Fri {
@@ -170,12 +134,12 @@ impl Experiment {
         let scenario = &self.scenario;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
         let mut contacts = if self.contacts {
-            scenario.contacts()
+            Contacts::of(scenario)
         } else {
             Contacts::none()
         };
-        let places = Places::new(scenario);
-        let origins = scenario.origins_at(&scenario.start());
+        let probes = LevelProbes::new(scenario);
+        let origins = origins(scenario, &scenario.start());
         let gains = LawGains {
             rate: JointVector::repeat(scenario.null_space.rate_gain),
             stiffness: controller.compliance().stiffness,
@@ -196,7 +160,7 @@ impl Experiment {
         for cycle in 0..cycles {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
-            stop = unsafe_motion(&truth, controller.arm().speed_limit()).map(Stop::Safety);
+            stop = UnsafeMotion::of(&truth, controller.arm().speed_limit()).map(Stop::Unsafe);
             if stop.is_some() {
                 break;
             }
@@ -207,10 +171,10 @@ impl Experiment {
                 interval_s: cycle_s,
             };
             let reference = scenario.reference(&origins, &scenario.start(), t_s);
-            let mut insight = Insight::default();
+            let mut view = PriorityView::default();
             let step = controller.step_with(&mut state, &measurement, &reference, |_, _, data| {
                 let decision = self.controller.decide(data, &gains);
-                insight = Insight::new(data, &decision);
+                view = PriorityView::new(data, &decision);
                 data.demand = decision.demand(&data.dynamics);
             });
             stop = step.status.fault.map(Stop::Fault);
@@ -220,28 +184,27 @@ impl Experiment {
 
             contacts.take_hold(t_s, plant.model(), &truth);
             let (contact_torque, hand_force_n) = contacts.joint_torque(t_s, plant.model(), &truth);
-            let mut levels = places.levels(plant.model(), &truth, &reference);
-            let lower = insight.below.iter().map(|below| (below, &step.torque));
-            for (level, (place, (below, torque))) in
-                levels.iter_mut().zip(places.0.iter().zip(lower))
+            let mut levels = probes.levels(plant.model(), &truth, &reference);
+            let lower = view.below.iter().map(|below| (below, &step.torque));
+            for (level, (probe, (below, torque))) in
+                levels.iter_mut().zip(probes.0.iter().zip(lower))
             {
-                level.leak = place.leak(plant.model(), &truth, torque, below);
+                level.leak = probe.leak(plant.model(), &truth, torque, below);
             }
-            let instant = Instant {
+            let sample = Sample {
                 t_s,
-                state: &truth,
-                torque: &step.torque,
-                residual: &step.residual,
+                state: truth,
+                torque: step.torque,
+                residual: step.residual,
                 saturated: step.status.saturated.any(),
                 rank: step.status.rank.any(),
-                tau_ext: &-contact_torque,
+                tau_ext: -contact_torque,
                 hand_force_n,
-                conditioning: &insight.conditioning,
-                levels: &levels,
-                plant: plant.model(),
+                conditioning: view.conditioning,
+                levels,
             };
-            metrics.add(&instant);
-            sink(&instant)?;
+            metrics.add(&sample);
+            sink(&sample)?;
             plant.advance(t_s, &step.torque, |t, model, state| {
                 contacts.joint_torque(t, model, state).0
             });
@@ -265,10 +228,11 @@ impl Experiment {
         let mut faults = FaultCounts::default();
         let (verdict, reason) = match stop {
             None => summary::verdict(&acceptance),
-            Some(Stop::Safety(reason)) => (Verdict::Stopped, Some(reason)),
-            Some(Stop::Fault(fault)) => {
-                faults.add(fault.kind);
-                (Verdict::Stopped, Some(fault.to_string()))
+            Some(stop) => {
+                if let Stop::Fault(fault) = &stop {
+                    faults.add(fault.kind);
+                }
+                (Verdict::Stopped, Some(stop.to_string()))
             }
         };
         Summary {
@@ -293,28 +257,4 @@ impl Experiment {
             link: None,
         }
     }
-}
-
-/// Why the true motion must be stopped, if it must.
-pub(crate) fn unsafe_motion(
-    state: &JointState<f64>,
-    speed_limit: &JointVector<f64>,
-) -> Option<String> {
-    for joint in 0..speed_limit.len() {
-        let (q, dq) = (state.q[joint], state.dq[joint]);
-        let limit = SPEED_FACTOR * speed_limit[joint];
-        if !(q.is_finite() && dq.is_finite()) {
-            return Some(format!(
-                "joint {} is not finite: q = {q} rad, dq = {dq} rad/s",
-                joint + 1
-            ));
-        }
-        if dq.abs() > limit {
-            return Some(format!(
-                "speed of joint {} is {dq:.3} rad/s; allowed -{limit:.3} to {limit:.3}",
-                joint + 1
-            ));
-        }
-    }
-    None
 }

@@ -9,7 +9,7 @@ use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
 use controller_core::{Measurement, Reference};
 
 use crate::controllers::LawGains;
-use crate::invalid::Invalid;
+use cell::invalid::Invalid;
 
 pub use input::Input;
 pub use output::Output;

@@ -1,29 +1,35 @@
 //! The robot's side of the loop on a PC: plant, contacts, experiments, reports.
 //!
-//! Bottom-up: [`plant`] is an arm that knows nothing of the controller;
-//! [`contact`] pushes it; [`scenario`] is an experiment as data;
-//! [`experiment`] closes the loop around `controller-core` with one of the
-//! [`controllers`]; [`metrics`], [`trace`] and [`summary`] say what happened;
-//! [`explain`] lays one cycle open; [`cli`] is the program.
+//! An experiment as data, errors and choices are in the crate `cell`, what is recorded of a
+//! cycle in the crate `record`: the controller's program has them too. Bottom-up:
+//!
+//! - [`plant`]: an arm that knows nothing of the controller; [`arm_points`]: where its points
+//!   and links are; [`contact`]: what pushes it;
+//! - [`controllers`]: the laws that are compared;
+//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`metrics`] and
+//!   [`summary`]: figures and verdict;
+//! - [`robot`]: the robot controller of the FRI link; [`link`]: what may happen to datagrams;
+//! - [`experiment`]: the loop around `controller-core` with one of the laws; [`loopback`]: the
+//!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
+//! - [`output`], [`trace`], [`report`]: the files of a run; [`paper`]: every experiment and
+//!   claim of the paper;
+//! - [`serve`]: the robot on a socket or a serial line; [`cli`]: the program.
 
+pub mod arm_points;
 pub mod cli;
 pub mod contact;
 pub mod controllers;
 pub mod experiment;
 pub mod explain;
-pub mod invalid;
 pub mod link;
 pub mod loopback;
 pub mod metrics;
-pub mod names;
 pub mod output;
 pub mod paper;
 pub mod plant;
 pub mod report;
-mod reworded;
 pub mod robot;
-pub mod scenario;
+pub mod sample;
 pub mod serve;
 pub mod summary;
-pub mod terminal;
 pub mod trace;

@@ -7,10 +7,10 @@ use std::io;
 
 use bridge::session::{ANSWER_LEN, Outcome, Session, SessionConfig};
 
-use crate::experiment::Instant;
 use crate::link::{Expect, Fault, LockStep, Peer};
 use crate::robot::Robot;
-use crate::scenario::{Scenario, ScenarioSource};
+use cell::scenario::{Scenario, ScenarioSource};
+use record::run::Sample;
 
 /// The bridge as a client in this process.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ pub fn run(
     robot: &mut Robot,
     client: &mut BridgeClient,
     faults: &[Fault],
-    mut sink: impl FnMut(&Instant<'_>, &Session) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample, &Session) -> io::Result<()>,
 ) -> io::Result<()> {
     let cycle_s = robot.setup().scenario.cycle_s();
     let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);

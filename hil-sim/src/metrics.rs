@@ -1,90 +1,11 @@
 //! Figures of a run, accumulated cycle by cycle.
 
+use cell::scenario::{Interval, LevelSpec, Metric, TaskSpec, Unit};
 use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
-use crate::contact::Interval;
-use crate::experiment::Instant;
-use crate::invalid::Invalid;
-use crate::scenario::{LevelSpec, TaskSpec};
-
-/// A figure that an acceptance limit can name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Metric {
-    /// rms error of a level over all cycles.
-    Rms(usize),
-    /// Largest error of a level.
-    Max(usize),
-    /// Largest plateau of a level over the contacts.
-    Plateau(usize),
-}
-
-impl Metric {
-    /// From a name such as `level1_rms_mm`, or `level2_max_mrad` for an
-    /// orientation; levels count from 1.
-    ///
-    /// # Errors
-    /// The names that exist for these levels.
-    pub fn parse(name: &str, levels: &[LevelSpec]) -> Result<Self, Invalid> {
-        let mut known = Vec::new();
-        for (index, level) in levels.iter().enumerate() {
-            let unit = Unit::of(level.task).suffix();
-            for (figure, metric) in [
-                ("rms", Self::Rms(index)),
-                ("max", Self::Max(index)),
-                ("plateau", Self::Plateau(index)),
-            ] {
-                let full = format!("level{}_{figure}_{unit}", index + 1);
-                if full == name {
-                    return Ok(metric);
-                }
-                known.push(full);
-            }
-        }
-        let known: Vec<_> = known.iter().map(String::as_str).collect();
-        Err(Invalid::name("metric", name, &known))
-    }
-
-    /// Its value in the figures of a run; none without samples.
-    #[must_use]
-    pub fn value(self, levels: &[LevelFigures]) -> Option<f64> {
-        match self {
-            Self::Rms(level) => levels[level].rms(),
-            Self::Max(level) => levels[level].max(),
-            Self::Plateau(level) => levels[level].worst_plateau(),
-        }
-    }
-}
-
-/// Unit of a level's error, a thousandth of its SI unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Position.
-    Millimetre,
-    /// Orientation.
-    Milliradian,
-}
-
-impl Unit {
-    /// The unit of a task.
-    #[must_use]
-    pub fn of(task: TaskSpec) -> Self {
-        match task {
-            TaskSpec::Position => Self::Millimetre,
-            TaskSpec::Orientation => Self::Milliradian,
-        }
-    }
-
-    /// "mm" or "mrad".
-    #[must_use]
-    pub fn suffix(self) -> &'static str {
-        match self {
-            Self::Millimetre => "mm",
-            Self::Milliradian => "mrad",
-        }
-    }
-}
+use record::run::Sample;
 
 /// Root mean square of what was added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -177,6 +98,16 @@ impl LevelFigures {
     pub fn worst_plateau(&self) -> Option<f64> {
         let plateaus = self.plateau_mm.iter().chain(&self.plateau_mrad);
         plateaus.flatten().copied().reduce(f64::max)
+    }
+}
+
+/// The value of a metric in the figures of a run; none without samples.
+#[must_use]
+pub fn value(metric: Metric, levels: &[LevelFigures]) -> Option<f64> {
+    match metric {
+        Metric::Rms(level) => levels[level].rms(),
+        Metric::Max(level) => levels[level].max(),
+        Metric::Plateau(level) => levels[level].worst_plateau(),
     }
 }
 
@@ -299,7 +230,7 @@ impl Metrics {
     }
 
     /// Adds a cycle.
-    pub fn add(&mut self, sample: &Instant<'_>) {
+    pub fn add(&mut self, sample: &Sample) {
         if self.cycles == 0 {
             self.first = sample.state.q;
         }
@@ -310,7 +241,7 @@ impl Metrics {
             .contacts
             .iter()
             .any(|contact| contact.inside(sample.t_s));
-        for (level, shown) in self.levels.iter_mut().zip(sample.levels) {
+        for (level, shown) in self.levels.iter_mut().zip(&sample.levels) {
             if !shown.leak.is_nan() {
                 level.leak = Some(
                     level

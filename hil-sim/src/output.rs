@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::invalid::Invalid;
+use cell::invalid::Invalid;
 
 /// A file on its way. Dropped without [`Draft::commit`], it leaves nothing.
 pub struct Draft {

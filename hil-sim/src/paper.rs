@@ -15,9 +15,9 @@ pub mod stability;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use crate::invalid::Invalid;
 use crate::output;
-use crate::terminal::{print, show};
+use cell::invalid::Invalid;
+use cell::terminal::{print, show};
 use claims::{Claim, Verdict};
 use results::Results;
 

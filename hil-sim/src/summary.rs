@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
+use cell::scenario::{Metric, Scenario};
+
 use crate::metrics::{
-    FaultCounts, JointFigures, LevelFigures, LimitCounts, Metric, ResidualFigures, TorqueFigures,
+    self, FaultCounts, JointFigures, LevelFigures, LimitCounts, ResidualFigures, TorqueFigures,
 };
-use crate::names::{MeasurementKind, Named};
-use crate::plant::PlantKind;
 use crate::robot::LinkFigures;
-use crate::scenario::Scenario;
+use cell::names::{MeasurementKind, Named, PlantKind};
 
 /// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -133,7 +133,7 @@ pub fn judge(
     applies
         .filter_map(|limit| {
             let metric = Metric::parse(&limit.metric, &scenario.levels).ok()?;
-            let value = metric.value(levels);
+            let value = metrics::value(metric, levels);
             Some(Acceptance {
                 metric: limit.metric.clone(),
                 limit: limit.below,

@@ -1,15 +1,15 @@
-//! trace.csv: one row per cycle, SI units, 17 significant digits.
+//! trace.csv: one row per cycle.
 
 use std::io::{self, Write};
 
-use controller_core::joint::DOF;
-
-use crate::experiment::Instant;
-use crate::scenario::{Scenario, TaskSpec};
+use cell::scenario::{LevelSpec, Scenario, TaskSpec};
+use record::csv::Row;
+use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
 /// Writes rows as they come.
 pub struct Trace<W: Write> {
     out: W,
+    row: Row,
 }
 
 impl<W: Write> Trace<W> {
@@ -18,60 +18,37 @@ impl<W: Write> Trace<W> {
     /// # Errors
     /// Those of the writer.
     pub fn new(mut out: W, scenario: &Scenario) -> io::Result<Self> {
-        write!(out, "t")?;
-        for name in ["q", "dq", "tau", "tau_ext", "r"] {
-            for joint in 1..=DOF {
-                write!(out, ",{name}{joint}")?;
-            }
-        }
+        let mut row = Row::default();
+        row.names(CHANNELS, 0, &[]);
         for (number, level) in (1..).zip(&scenario.levels) {
-            let coordinates: Vec<_> = match level.task {
-                TaskSpec::Position => level.axes.chars().map(String::from).collect(),
-                TaskSpec::Orientation => ["qw", "qx", "qy", "qz"].map(String::from).to_vec(),
-            };
-            for coordinate in &coordinates {
-                write!(out, ",x{number}_des_{coordinate}")?;
-            }
-            for coordinate in &coordinates {
-                write!(out, ",x{number}_{coordinate}")?;
-            }
-            write!(out, ",e{number}")?;
+            row.names(LEVEL_CHANNELS, number, &axes(level));
         }
-        writeln!(out)?;
-        Ok(Self { out })
+        row.finish(&mut out)?;
+        Ok(Self { out, row })
     }
 
     /// Writes a row.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn push(&mut self, instant: &Instant<'_>) -> io::Result<()> {
-        write!(self.out, "{:.16e}", instant.t_s)?;
-        for vector in [
-            &instant.state.q,
-            &instant.state.dq,
-            instant.torque,
-            instant.tau_ext,
-            instant.residual,
-        ] {
-            self.values(vector.as_slice())?;
+    pub fn push(&mut self, sample: &Sample) -> io::Result<()> {
+        self.row.values(CHANNELS, sample);
+        for level in &sample.levels {
+            self.row.values(LEVEL_CHANNELS, level);
         }
-        for level in instant.levels {
-            self.values(&level.desired)?;
-            self.values(&level.actual)?;
-            self.values(&[level.error])?;
-        }
-        writeln!(self.out)
-    }
-
-    fn values(&mut self, values: &[f64]) -> io::Result<()> {
-        values
-            .iter()
-            .try_for_each(|value| write!(self.out, ",{value:.16e}"))
+        self.row.finish(&mut self.out)
     }
 
     /// The writer, with everything in it.
     pub fn finish(self) -> W {
         self.out
+    }
+}
+
+/// Names of the coordinates of a level.
+fn axes(level: &LevelSpec) -> Vec<String> {
+    match level.task {
+        TaskSpec::Position => level.axes.chars().map(String::from).collect(),
+        TaskSpec::Orientation => ["qw", "qx", "qy", "qz"].map(String::from).to_vec(),
     }
 }

@@ -4,10 +4,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use cell::names::PlantKind;
+use cell::scenario::{Scenario, ScenarioSource};
 use hil_sim::loopback::{self, BridgeClient};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::{Scenario, ScenarioSource};
 use hil_sim::serve::{Client, End, Operator, Serial, Service, Transport};
 use hil_sim::trace::Trace;
 use serial2::SerialPort;

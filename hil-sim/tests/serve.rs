@@ -11,8 +11,8 @@ use std::thread;
 use std::time::Duration;
 
 use bridge::session::{ANSWER_LEN, Outcome, Session};
+use cell::scenario::{Scenario, ScenarioSource};
 use fri::{Command, Flags, InterfaceState, Measurement, MeasurementPacket};
-use hil_sim::scenario::{Scenario, ScenarioSource};
 use serde_json::Value;
 
 /// A client on its own port that answers until it is dropped.

@@ -1,10 +1,11 @@
 //! The core's kinematics and dynamics against identities that any correct
 //! model obeys, and against the independent plant.
 
+use cell::scenario::{BUILT_IN, Scenario};
 use controller_core::arm::{LWR_IV, Link};
 use controller_core::joint::{JointState, JointVector, Vector3};
+use hil_sim::contact::Contacts;
 use hil_sim::plant::PlantModel;
-use hil_sim::scenario::{BUILT_IN, Scenario};
 use stratum_tests::random::States;
 use stratum_tests::{JOINTS, evaluate, lwr, relative, unit};
 
@@ -195,7 +196,7 @@ fn contacts_act_on_the_point_that_they_name() {
     let mut pushes = 0;
     for (name, _) in BUILT_IN {
         let scenario = Scenario::find(name).expect("built in");
-        let contacts = scenario.contacts();
+        let contacts = Contacts::of(&scenario);
         for push in &scenario.pushes {
             let (middle, point) = ((push.from_s + push.to_s) / 2.0, push.point.resolve());
             for _ in 0..20 {

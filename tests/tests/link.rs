@@ -2,11 +2,12 @@
 //! freezes, in virtual time: the figures that a user may count on.
 
 use bridge::session::Phase;
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use hil_sim::link::Fault;
 use hil_sim::loopback::{self, BridgeClient};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::Scenario;
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 
@@ -64,7 +65,7 @@ fn run(wish: &Wish<'_>) -> Run {
     let (mut cycles, mut phases) = (Vec::new(), Vec::new());
     loopback::run(&mut robot, &mut client, &faults, |instant, session| {
         let error_mm = instant.levels[0].error * 1e3;
-        cycles.push((instant.t_s, error_mm, (*instant.torque).into()));
+        cycles.push((instant.t_s, error_mm, instant.torque.into()));
         phases.push(session.phase());
         Ok(())
     })

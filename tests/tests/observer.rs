@@ -2,12 +2,13 @@
 //! the gain and the interval, and inside the controller it is fed with what
 //! really happened.
 
+use cell::names::PlantKind;
 use controller_core::arm::LWR_IV;
 use controller_core::cycle::observer::{Observer, external_torque};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Controller, Measurement, Reference, State, Target};
-use hil_sim::plant::{Plant, PlantKind};
+use hil_sim::plant::Plant;
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use std::cell::RefCell;

@@ -1,12 +1,13 @@
 //! Figures of orientation levels are angles: of trace and summary, against the closed
 //! form of the motion and against formulas that share nothing with the program's.
 
+use cell::names::PlantKind;
+use cell::names::{MeasurementKind, NullStiffness};
+use cell::scenario::Scenario;
 use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
-use hil_sim::names::{MeasurementKind, NullStiffness};
-use hil_sim::plant::{PlantKind, PlantModel, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::plant::{PlantModel, PlantOptions};
 use hil_sim::summary::Summary;
 use hil_sim::trace::Trace;
 use std::f64::consts::{PI, TAU};

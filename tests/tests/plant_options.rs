@@ -3,13 +3,17 @@
 
 use std::time::Instant;
 
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use controller_core::arm::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::ranges::DEAD_CYCLES_MAX;
 use controller_core::{Controller, Measurement, State, Target};
+use hil_sim::arm_points::origins;
+use hil_sim::contact::Contacts;
 use hil_sim::plant::elastic::JOINT_STIFFNESS;
 use hil_sim::plant::friction::COULOMB;
-use hil_sim::plant::{DEAD_CYCLES_MAX, Plant, PlantKind, PlantModel, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::plant::{Plant, PlantModel, PlantOptions};
 
 const CYCLE: f64 = 0.002;
 const START: [f64; DOF] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];
@@ -149,7 +153,7 @@ fn dead_time_delays_the_torque_and_holds_the_arm_until_it_arrives() {
     let hold = PlantModel::new(&LWR_IV).gravity_torque(&START.into());
     let command = |n: usize| hold + JointVector::repeat(0.03 * n as f64);
     for kind in KINDS {
-        for cycles in 0..=DEAD_CYCLES_MAX {
+        for cycles in 0..=usize::from(DEAD_CYCLES_MAX) {
             let (mut late, mut prompt) = (plant(kind, dead(cycles)), plant(kind, REFERENCE));
             for n in 0..30_usize {
                 let t = n as f64 * CYCLE;
@@ -231,7 +235,10 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
     let config = config.expect("levels that make a set");
     let controller = Controller::new(scenario.arm(), &config).expect("a valid configuration");
     let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
-    let (origins, mut contacts) = (scenario.origins_at(&scenario.start()), scenario.contacts());
+    let (origins, mut contacts) = (
+        origins(&scenario, &scenario.start()),
+        Contacts::of(&scenario),
+    );
     let (arm, start) = (scenario.arm(), scenario.start());
     let mut state = State::new();
     let mut plant = Plant::with_options(kind, arm, start, cycle_s, seed, options);

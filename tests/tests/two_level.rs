@@ -1,11 +1,11 @@
 //! The two-level experiment in closed loop: figures are the worst over seeds 1
 //! to 10, as the README states them.
 
+use cell::names::{MeasurementKind, NullStiffness, PlantKind};
+use cell::scenario::Scenario;
 use hil_sim::controllers::ControllerKind;
 use hil_sim::experiment::Experiment;
-use hil_sim::names::{MeasurementKind, NullStiffness};
-use hil_sim::plant::{PlantKind, PlantOptions};
-use hil_sim::scenario::Scenario;
+use hil_sim::plant::PlantOptions;
 use hil_sim::summary::{Summary, Verdict};
 use hil_sim::trace::Trace;
 

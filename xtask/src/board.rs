@@ -11,9 +11,9 @@ use crate::tools::{QEMU, Tools, Trouble};
 /// Port on which the emulated board is reached, and of `hil-sim serve`.
 const PORT: &str = "49938";
 
-/// The link of the image.
+/// What carries the datagrams of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Link {
+pub enum Medium {
     /// UDP on the emulated Ethernet.
     Ethernet,
     /// Frames on the emulated serial port, which is a pseudo terminal here.
@@ -30,7 +30,7 @@ pub struct Board {
 
 impl Board {
     /// Builds the image and starts it.
-    pub fn start(tools: &Tools, link: Link) -> Result<Self, Trouble> {
+    pub fn start(tools: &Tools, medium: Medium) -> Result<Self, Trouble> {
         let image = tools.image("fri", &[])?;
         let switches = [stop_file(tools), tools.work.join("fri-serial")];
         // A stale one would count.
@@ -38,12 +38,12 @@ impl Board {
         let mut qemu = Command::new(QEMU);
         qemu.args(["-M", "mps2-an500", "-display", "none", "-monitor", "none"]);
         qemu.args(["-semihosting-config", "enable=on,target=native"]);
-        match link {
-            Link::Serial => {
+        match medium {
+            Medium::Serial => {
                 fs::write(&switches[1], "")?;
                 qemu.args(["-serial", "pty"]);
             }
-            Link::Ethernet => {
+            Medium::Ethernet => {
                 let forward = format!("hostfwd=udp:127.0.0.1:{PORT}-10.0.2.15:{PORT}");
                 qemu.args(["-serial", "null", "-nic"]);
                 qemu.arg(format!("user,model=lan9118,{forward}"));

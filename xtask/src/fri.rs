@@ -1,13 +1,13 @@
 //! The controller on the emulated board, for `hil-sim serve` in another terminal.
 
-use crate::board::{self, Board, Link};
+use crate::board::{self, Board, Medium};
 use crate::tools::{Need, Outcome, Tools};
 
 /// Runs the image until the motion is over, the emergency stop is pulled or the
 /// robot is gone. What it says is printed as it comes.
-pub fn run(link: Link) -> Outcome {
+pub fn run(medium: Medium) -> Outcome {
     let tools = Tools::find(&[Need::Emulator])?;
-    let mut board = Board::start(&tools, link)?;
+    let mut board = Board::start(&tools, medium)?;
     println!(
         "emergency stop: touch {}",
         board::stop_file(&tools).display()

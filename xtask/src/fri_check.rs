@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
-use crate::board::{self, Board, Link};
+use crate::board::{self, Board, Medium};
 use crate::tools::{Need, Outcome, Tools, Trouble, failed};
 
 /// Motion over the serial line \[s\]: the emulated port takes about 40 ms for the
@@ -15,17 +15,17 @@ const SERIAL_S: &str = "1";
 /// Over Ethernet the whole motion, an emergency stop and a robot that is taken away;
 /// over the serial line the beginning of the motion, a minute's work for the emulator.
 /// Each check prints what it saw.
-pub fn run(link: Link) -> Outcome {
+pub fn run(medium: Medium) -> Outcome {
     let tools = Tools::find(&[Need::Emulator])?;
     let bench = Bench::new(&tools)?;
-    match link {
-        Link::Ethernet => {
+    match medium {
+        Medium::Ethernet => {
             let whole = bench.whole()?;
             let stopped = bench.emergency_stop()?;
             let gone = bench.silence()?;
             Ok(whole && stopped && gone)
         }
-        Link::Serial => bench.serial(),
+        Medium::Serial => bench.serial(),
     }
 }
 
@@ -70,12 +70,12 @@ impl<'a> Bench<'a> {
     }
 
     /// Starts the board, and the robot as soon as the board says where it is.
-    fn start(&self, link: Link, more: &[&str]) -> Result<(Board, Robot), Trouble> {
+    fn start(&self, medium: Medium, more: &[&str]) -> Result<(Board, Robot), Trouble> {
         // An old trace would count.
         if self.folder().exists() {
             fs::remove_dir_all(self.folder())?;
         }
-        let mut board = Board::start(self.tools, link)?;
+        let mut board = Board::start(self.tools, medium)?;
         let options = loop {
             let line = board
                 .line()
@@ -105,7 +105,7 @@ impl<'a> Bench<'a> {
 
     /// The whole motion over Ethernet.
     fn whole(&self) -> Outcome {
-        let (mut board, mut robot) = self.start(Link::Ethernet, &[])?;
+        let (mut board, mut robot) = self.start(Medium::Ethernet, &[])?;
         let mut last = String::new();
         while let Some(line) = board.line() {
             last = line;
@@ -126,7 +126,7 @@ impl<'a> Bench<'a> {
 
     /// Pulls the emergency stop in the middle of the motion.
     fn emergency_stop(&self) -> Outcome {
-        let (mut board, _robot) = self.start(Link::Ethernet, &[])?;
+        let (mut board, _robot) = self.start(Medium::Ethernet, &[])?;
         let mut seen = None;
         while let Some(line) = board.line() {
             if line.contains(" moving:") {
@@ -145,7 +145,7 @@ impl<'a> Bench<'a> {
 
     /// Takes the robot away in the middle of the motion.
     fn silence(&self) -> Outcome {
-        let (mut board, robot) = self.start(Link::Ethernet, &[])?;
+        let (mut board, robot) = self.start(Medium::Ethernet, &[])?;
         let (mut robot, mut seen) = (Some(robot), None);
         while let Some(line) = board.line() {
             if line.contains(" moving:") {
@@ -168,7 +168,7 @@ impl<'a> Bench<'a> {
 
     /// The beginning of the motion over the serial line.
     fn serial(&self) -> Outcome {
-        let (_board, mut robot) = self.start(Link::Serial, &["--duration", SERIAL_S])?;
+        let (_board, mut robot) = self.start(Medium::Serial, &["--duration", SERIAL_S])?;
         robot.0.wait()?;
         let (cycles, equal) = self.trace()?;
         let verdict = if equal { "equal" } else { "NOT equal" };

@@ -24,7 +24,7 @@ mod tools;
 
 use std::process::ExitCode;
 
-use board::Link;
+use board::Medium;
 use tools::{Need, Outcome};
 
 const USAGE: &str = "usage: cargo xtask COMMAND
@@ -65,10 +65,10 @@ fn main() -> ExitCode {
         ["bench-m7"] => bench::run(false),
         ["bench-m7", "--write"] => bench::run(true),
         ["arm-m7"] => arm::run(),
-        ["fri-m7"] => fri::run(Link::Ethernet),
-        ["fri-m7", "--serial"] => fri::run(Link::Serial),
-        ["fri-m7", "--check"] => fri_check::run(Link::Ethernet),
-        ["fri-m7", "--check", "--serial"] => fri_check::run(Link::Serial),
+        ["fri-m7"] => fri::run(Medium::Ethernet),
+        ["fri-m7", "--serial"] => fri::run(Medium::Serial),
+        ["fri-m7", "--check"] => fri_check::run(Medium::Ethernet),
+        ["fri-m7", "--check", "--serial"] => fri_check::run(Medium::Serial),
         ["board-m7"] => placement::run(),
         ["lines"] => lines::run(None),
         ["lines", revision] => lines::run(Some(revision)),

@@ -8,6 +8,8 @@ use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
 use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// A session is begun anew after so many datagrams: a fault or a stop ends one.
 const SESSION: u64 = 5_000;
@@ -15,19 +17,11 @@ const SESSION: u64 = 5_000;
 /// Largest torque on the wire: the limit of the strongest joint plus its gravity [Nm].
 const TORQUE_MAX: f32 = 176.0 + 70.0;
 
-/// xorshift64*.
-struct Random(u64);
+struct Random(ChaCha8Rng);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-
     fn below(&mut self, limit: usize) -> usize {
-        ((self.next() >> 33) as usize) % limit
+        (self.0.next_u32() as usize) % limit
     }
 }
 
@@ -112,7 +106,7 @@ fn measurement() -> Measurement {
 /// # Errors
 /// An answer that should not be, with the number of the datagram.
 pub fn run(count: u64, seed: u64) -> Result<Table, String> {
-    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
     let mut table = Table::default();
     let (mut robot, mut session, mut rest) =
         (measurement(), session(), Rest(Reference::hold(0, [0.0; 7])));
@@ -187,7 +181,7 @@ fn damage(bytes: &mut [u8], random: &mut Random) -> usize {
         0 => random.below(bytes.len() + 1),
         1 => {
             // A counter that jumps.
-            let jump = random.next() as u16;
+            let jump = random.0.next_u32() as u16;
             set(bytes, 0, &jump.to_le_bytes());
             Measurement::LEN
         }
@@ -201,7 +195,7 @@ fn damage(bytes: &mut [u8], random: &mut Random) -> usize {
         3 => {
             // A real with any bits: period, positions, models.
             let at = 140 + 4 * random.below((Measurement::LEN - 140) / 4);
-            let bits = random.next() as u32;
+            let bits = random.0.next_u32();
             set(bytes, at, &bits.to_le_bytes());
             Measurement::LEN
         }

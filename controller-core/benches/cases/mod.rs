@@ -11,6 +11,8 @@ use controller_core::{
     Axes, Controller, ControllerConfig, Measurement, NullSpace, Reference, Target, Task, TaskGains,
     TaskSet,
 };
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// Random states, besides the adversarial ones.
 const RANDOM: usize = 2_000;
@@ -79,16 +81,12 @@ impl<T: Real> Case<T> {
     }
 }
 
-/// Uniform in -1 .. 1, from a linear congruential generator (Knuth's MMIX).
-struct Random(u64);
+struct Random(ChaCha8Rng);
 
 impl Random {
+    /// Uniform in -1 .. 1.
     fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        (self.0.next_u64() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     fn joints(&mut self, scale: impl Fn(usize) -> f64) -> [f64; 7] {
@@ -99,7 +97,7 @@ impl Random {
 /// Random states over the whole range of the joints, then what is hard: singular,
 /// at rest, at the border of what is believed, denormal, saturated.
 pub fn states() -> Vec<Input> {
-    let mut random = Random(1);
+    let mut random = Random(ChaCha8Rng::seed_from_u64(1));
     let position = |i: usize| LWR_IV.links[i].position_limit;
     let speed = |i: usize| LWR_IV.links[i].speed_limit;
     let mut states: Vec<Input> = (0..RANDOM)

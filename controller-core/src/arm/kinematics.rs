@@ -1,9 +1,9 @@
 //! Frames, joint axes and their rates, from one pass over the chain; points on
 //! any link with position, velocity and Jacobian rows.
 
+use crate::arm::exchange::AxisExchange;
 use crate::arm::link::Link;
 use crate::arm::model::ArmModel;
-use crate::arm::transform::AxisExchange;
 use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, sines_cosines, zeros};
 use crate::linalg::for_each_joint;
 use crate::real::Real;

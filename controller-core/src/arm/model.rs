@@ -1,7 +1,7 @@
 //! The validated arm, as the algorithms read it.
 
+use crate::arm::exchange::AxisExchange;
 use crate::arm::parameters::{ArmError, ArmParameters, LinkParameters, second_moment, validate};
-use crate::arm::transform::AxisExchange;
 use crate::joint::{DOF, JointVector, Lanes, Vector3};
 use crate::real::Real;
 

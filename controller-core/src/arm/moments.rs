@@ -4,8 +4,9 @@
 //! angles of twist only exchange axes; a sum about one point of the arm never
 //! contains the lever to another one.
 
+use crate::arm::exchange::AxisExchange;
 use crate::arm::model::LinkModel;
-use crate::arm::transform::{AxisExchange, JointTransform, by_exchange};
+use crate::arm::transform::{JointTransform, by_exchange};
 use crate::joint::Lanes;
 use crate::real::Real;
 

@@ -1,21 +1,16 @@
-//! One control cycle, from measurement to torque.
+//! The controller: what is known before the first cycle, validated once.
 
 use super::config::ControllerConfig;
-use super::data::{Data, Input, State};
-use super::measurement::{Measurement, believe};
-use super::stages::{StageName, kinematics_at, torque_demand};
-use super::usable::usable;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
-use crate::fault::{Fault, Status};
-use crate::joint::{JointState, JointVector, zeros};
+use crate::joint::JointVector;
 use crate::law::null_space::Compliance;
 use crate::law::sampling::DampingRate;
 use crate::real::Real;
-use crate::task::{Levels, Reference};
+use crate::task::Levels;
 
 /// The immutable part: arm, tasks, gains and limits, validated once and converted to
-/// the precision of the cycle. One controller can drive any number of [`State`]s.
+/// the precision of the cycle. One controller can drive any number of [`State`](super::State)s.
 #[derive(Clone, Debug)]
 pub struct Controller<T: Real> {
     pub(super) arm: ArmModel<T>,
@@ -25,23 +20,6 @@ pub struct Controller<T: Real> {
     pub(super) cycle_s: T,
     pub(super) dead_cycles: u8,
     pub(super) fastest_mode: DampingRate,
-}
-
-/// The result of one cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<T: Real> {
-    /// Joint torque to apply until the next cycle \[Nm\]: always finite and
-    /// within the limits of the arm.
-    pub torque: JointVector<T>,
-    /// r \[Nm\], tends to -tau_ext; zero while a fault is latched.
-    pub residual: JointVector<T>,
-    /// g(q) \[Nm\], contained in the torque: what a robot that compensates
-    /// gravity itself must not be sent. While a fault is latched the torque itself.
-    pub gravity: JointVector<T>,
-    /// C dq \[Nm\], contained in the torque; zero while a fault is latched.
-    pub coriolis: JointVector<T>,
-    /// What limited or degraded the cycle.
-    pub status: Status,
 }
 
 impl<T: Real> Controller<T> {
@@ -80,7 +58,7 @@ impl<T: Real> Controller<T> {
         &self.arm
     }
 
-    /// Number of levels: so many targets a [`Reference`] needs.
+    /// Number of levels: so many targets a [`Reference`](crate::Reference) needs.
     #[must_use]
     pub fn level_count(&self) -> usize {
         self.levels.as_slice().len()
@@ -96,151 +74,5 @@ impl<T: Real> Controller<T> {
     #[must_use]
     pub fn fastest_mode(&self) -> DampingRate {
         self.fastest_mode
-    }
-
-    /// The reference that keeps the arm in the posture `q` \[rad\]: every level
-    /// at rest where it is there, q_d = q. What motions start from.
-    #[must_use]
-    pub fn rest_reference(&self, q: &JointVector<T>) -> Reference<T> {
-        let dq = zeros();
-        self.moving_reference(&JointState { q: *q, dq })
-    }
-
-    /// The reference that moves as the arm does at this instant: position and
-    /// velocity of every level, no acceleration, q_d = q.
-    #[must_use]
-    pub fn moving_reference(&self, joints: &JointState<T>) -> Reference<T> {
-        let kinematics = kinematics_at(self, joints);
-        let mut reference = Reference::hold(self.level_count(), joints.q);
-        let levels = self.levels.as_slice().iter();
-        for (target, level) in reference.targets_mut().iter_mut().zip(levels) {
-            *target = level.tracked.target(&kinematics);
-        }
-        reference
-    }
-
-    /// One cycle. Never fails and never panics: with a measurement or reference
-    /// that cannot be true it latches a fault and holds the arm by the gravity
-    /// torque of the last plausible posture (zero torque if there was none).
-    #[must_use]
-    pub fn step(
-        &self,
-        state: &mut State<T>,
-        measurement: &Measurement<T>,
-        reference: &Reference<T>,
-    ) -> Step<T> {
-        self.step_with(state, measurement, reference, torque_demand)
-    }
-
-    /// One cycle with another law in the place of [`StageName::TorqueDemand`],
-    /// everything around it unchanged: `law` reads the results above it and writes
-    /// [`Data::demand`]. For experiments that compare laws on equal terms.
-    #[must_use]
-    pub fn step_with(
-        &self,
-        state: &mut State<T>,
-        measurement: &Measurement<T>,
-        reference: &Reference<T>,
-        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
-    ) -> Step<T> {
-        let admitted = match state.fault {
-            Some(fault) => Err(fault),
-            None => believe(&self.arm, self.cycle_s, measurement)
-                .and_then(|()| usable(reference, &self.levels)),
-        };
-        if let Err(fault) = admitted {
-            return state.held(fault);
-        }
-        let input = Input {
-            measurement,
-            reference,
-        };
-        self.evaluate_with(&input, &mut state.data, law);
-        match state.data.allocation.fault(&state.data.demand) {
-            None => state.answer(),
-            Some(fault) => state.held(fault),
-        }
-    }
-
-    /// All stages on an input that is taken as it is: no check, no fault. For
-    /// inspection and tests.
-    pub fn evaluate(&self, input: &Input<'_, T>, data: &mut Data<T>) {
-        self.evaluate_until(StageName::ObserverInput, input, data);
-    }
-
-    /// The same up to and including the stage `last`.
-    pub fn evaluate_until(&self, last: StageName, input: &Input<'_, T>, data: &mut Data<T>) {
-        for (name, run) in Self::STAGES {
-            if name <= last {
-                run(self, input, data);
-            }
-        }
-    }
-
-    /// The same with another law.
-    #[inline]
-    pub fn evaluate_with(
-        &self,
-        input: &Input<'_, T>,
-        data: &mut Data<T>,
-        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
-    ) {
-        for (name, run) in Self::STAGES {
-            if name < StageName::TorqueDemand {
-                run(self, input, data);
-            }
-        }
-        law(self, input, data);
-        for (name, run) in Self::STAGES {
-            if name > StageName::TorqueDemand {
-                run(self, input, data);
-            }
-        }
-    }
-}
-
-impl<T: Real> State<T> {
-    /// The results of a cycle without a fault.
-    #[inline(always)]
-    fn answer(&self) -> Step<T> {
-        let data = &self.data;
-        Step {
-            torque: data.allocation.torque,
-            residual: *data.residual(),
-            gravity: data.dynamics.gravity,
-            coriolis: data.dynamics.coriolis,
-            status: Status {
-                fault: None,
-                saturated: data.allocation.saturated,
-                rank: data.hierarchy.deficient(),
-            },
-        }
-    }
-
-    fn held(&mut self, fault: Fault) -> Step<T> {
-        self.fault = Some(fault);
-        let holding_torque = self.data.holding_torque;
-        Step {
-            torque: holding_torque,
-            residual: zeros(),
-            gravity: holding_torque,
-            coriolis: zeros(),
-            status: Status {
-                fault: Some(fault),
-                ..Status::CLEAR
-            },
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stages_stand_in_the_order_of_their_names() {
-        for (index, (name, _)) in Controller::<f64>::STAGES.into_iter().enumerate() {
-            assert_eq!(index, name as usize, "{}", name.text());
-        }
     }
 }

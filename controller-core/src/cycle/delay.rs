@@ -6,7 +6,7 @@ use crate::real::Real;
 
 /// The torques of the last cycles: which of them acts now, behind a dead time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Delay<T: Real> {
+pub struct Delay<T: Real> {
     /// A ring.
     sent: [JointVector<T>; REMEMBERED],
     /// Where the next torque goes.
@@ -17,6 +17,8 @@ pub(crate) struct Delay<T: Real> {
 const REMEMBERED: usize = DEAD_CYCLES_MAX as usize;
 
 impl<T: Real> Delay<T> {
+    /// Nothing sent.
+    #[must_use]
     pub const fn new() -> Self {
         Self {
             sent: [zeros(); REMEMBERED],
@@ -47,6 +49,12 @@ impl<T: Real> Delay<T> {
         self.sent[self.place] = *torque;
         self.place = (self.place + 1) % REMEMBERED;
         acting
+    }
+}
+
+impl<T: Real> Default for Delay<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

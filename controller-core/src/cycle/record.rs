@@ -1,8 +1,8 @@
 //! One cycle as data, and a ring of the last cycles in the caller's storage:
 //! what happened before a fault.
 
-use super::controller::Step;
 use super::measurement::Measurement;
+use super::step::Step;
 use crate::fault::Status;
 use crate::joint::{JointVector, zeros};
 use crate::real::Real;

@@ -96,9 +96,18 @@ fn joint_state<T: Real>(_: &Controller<T>, input: &Input<'_, T>, data: &mut Data
     };
 }
 
-#[inline(never)]
 fn kinematics<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    data.kinematics.update(&controller.arm, &data.joints);
+    set_kinematics(controller, &data.joints, &mut data.kinematics);
+}
+
+/// Behind a call: it is in the flash once, for the cycle and for references.
+#[inline(never)]
+fn set_kinematics<T: Real>(
+    controller: &Controller<T>,
+    joints: &JointState<T>,
+    kinematics: &mut Kinematics<T>,
+) {
+    kinematics.update(&controller.arm, joints);
 }
 
 /// The result of that stage alone, for references: they need no more of a cycle.
@@ -107,7 +116,7 @@ pub(super) fn kinematics_at<T: Real>(
     joints: &JointState<T>,
 ) -> Kinematics<T> {
     let mut kinematics = Kinematics::new();
-    kinematics.update(&controller.arm, joints);
+    set_kinematics(controller, joints, &mut kinematics);
     kinematics
 }
 

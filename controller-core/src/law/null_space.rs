@@ -1,8 +1,8 @@
 //! Compliance of what the tasks leave: stiffness, damping, posture.
 
 use crate::arm::dynamics::Dynamics;
-use crate::error::ConfigError;
-use crate::gain::{self, Gain};
+use crate::error::{ConfigError, Gain};
+use crate::gain;
 use crate::joint::{DOF, JointMatrix, JointVector, zeros};
 use crate::ranges::GAIN_MAX;
 use crate::real::Real;

@@ -1,7 +1,7 @@
 //! The stacked rows J, dJ/dt that all levels make together, and what they command.
 
 use super::set::{Level, LevelPoint, Levels};
-use super::target::{HeldPlaces, Target};
+use super::target::{Held, HeldPlaces, Target};
 use super::{Axes, orientation};
 use crate::arm::Link;
 use crate::arm::kinematics::{JacobianRows, Kinematics};
@@ -69,7 +69,8 @@ impl<T: Real> TaskRows<T> {
                         }
                         _ => {
                             let [x, y, z] = motion.x.into();
-                            let place = held.hold(index, || [x, y, z, T::ZERO].into());
+                            let place =
+                                held.hold(index, Held::Position, || [x, y, z, T::ZERO].into());
                             let [x, y, z, _] = place.into();
                             (Vector3::from([x, y, z]) - motion.x, -motion.dx, zeros())
                         }
@@ -183,7 +184,11 @@ fn orientation_command<T: Real>(
             held.release(index);
             (*q, *w, *dw)
         }
-        _ => (held.hold(index, || actual), zeros(), zeros()),
+        _ => (
+            held.hold(index, Held::Orientation, || actual),
+            zeros(),
+            zeros(),
+        ),
     };
     let error = orientation::chord(&desired, &actual);
     Command::new(level, (error, w - motion.angular_velocity, dw))

@@ -3,8 +3,8 @@
 use super::{Axes, Target, orientation};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{Link, LinkPoint};
-use crate::error::ConfigError;
-use crate::gain::{self, Gain, diagonal};
+use crate::error::{ConfigError, Gain};
+use crate::gain::{self, diagonal};
 use crate::joint::{Matrix3, Vector3, zeros};
 use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M};
 use crate::real::Real;
@@ -217,11 +217,14 @@ impl<T: Real> Levels<T> {
                 }
                 Tracked::Orientation(link) => LevelPoint::Orientation(link),
             };
+            let TaskGains { stiffness, damping } = &task.gains;
             for row in 0..3 {
                 for column in 0..3 {
-                    let TaskGains { stiffness, damping } = &task.gains;
-                    level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
-                    level.damping[(row, column)] = T::from_f64(damping[row][column]);
+                    // The others are not read: whatever stands there stays out.
+                    if task.axes.contains(row) && task.axes.contains(column) {
+                        level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
+                        level.damping[(row, column)] = T::from_f64(damping[row][column]);
+                    }
                 }
             }
         }

@@ -137,30 +137,46 @@ impl<T: Real> Reference<T> {
     }
 }
 
+/// What a held place is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// Nothing: the level follows a target.
+    Nothing,
+    /// A position \[m\], in the first three entries.
+    Position,
+    /// A quaternion.
+    Orientation,
+}
+
 /// Where levels hold that have [`Target::Hold`]: the places of its first cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeldPlaces<T: Real> {
-    /// Position \[m\] in the first three entries, or a quaternion.
     places: [Quaternion<T>; MAX_LEVELS],
-    held: [bool; MAX_LEVELS],
+    held: [Held; MAX_LEVELS],
 }
 
 impl<T: Real> HeldPlaces<T> {
     pub const fn new() -> Self {
         Self {
             places: [zeros(); MAX_LEVELS],
-            held: [false; MAX_LEVELS],
+            held: [Held::Nothing; MAX_LEVELS],
         }
     }
 
-    /// The place of a level that holds; `now` is where it is.
+    /// The place of a level that holds a `kind`; `now` is where it is. A place of
+    /// another kind, left by another controller, is none.
     #[inline(always)]
-    pub fn hold(&mut self, level: usize, now: impl FnOnce() -> Quaternion<T>) -> Quaternion<T> {
+    pub fn hold(
+        &mut self,
+        level: usize,
+        kind: Held,
+        now: impl FnOnce() -> Quaternion<T>,
+    ) -> Quaternion<T> {
         match (self.places.get_mut(level), self.held.get_mut(level)) {
             (Some(place), Some(held)) => {
-                if !*held {
+                if *held != kind {
                     *place = now();
-                    *held = true;
+                    *held = kind;
                 }
                 *place
             }
@@ -172,7 +188,7 @@ impl<T: Real> HeldPlaces<T> {
     #[inline(always)]
     pub fn release(&mut self, level: usize) {
         if let Some(held) = self.held.get_mut(level) {
-            *held = false;
+            *held = Held::Nothing;
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Reference motions of a point: hold, straight move, circle and spiral, all
-//! starting and, where they end, ending at rest with zero acceleration.
+//! Reference motions: of a point straight move, circle and spiral, of an orientation a
+//! swing, and rest of both. All start and, where they end, end at rest with zero
+//! acceleration.
 
 use crate::joint::Vector3;
 use crate::real::Real;

@@ -12,9 +12,9 @@ use controller_core::joint::zeros;
 use controller_core::real::Real;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use firmware::guard::{Cause, Guard};
-use firmware::job::{CYCLE_S, Job, JobKind};
-use firmware::machine::{Machine, Output};
+use firmware::interlock::{Cause, Interlock};
+use firmware::interlocked_controller::{InterlockedController, Output};
+use firmware::scenario::{CYCLE_S, FixedScenario, ReadyScenario};
 
 /// Cycles of the script.
 const CYCLES: u32 = 200;
@@ -64,35 +64,35 @@ fn run<T: Real>(
     mut delay: impl DelayNs,
     mut seen: impl FnMut(u32, &Output<T>),
 ) -> Option<bool> {
-    let job = Job::<T>::new(JobKind::TwoLevel).ok()?;
+    let ready = ReadyScenario::<T>::new(FixedScenario::TwoLevel).ok()?;
     let pressed = Cell::new(false);
     let switch = Switch {
         button,
         pressed: &pressed,
     };
-    let guard = Guard::new(switch, drives, heartbeat);
-    let mut machine = Machine::new(job.controller.clone(), guard);
+    let interlock = Interlock::new(switch, drives, heartbeat);
+    let mut interlocked = InterlockedController::new(ready.controller.clone(), interlock);
     let mut as_expected = true;
     for cycle in 0..CYCLES {
         if ENABLED.contains(&cycle) {
-            machine.enable();
+            interlocked.enable();
         }
         pressed.set((PRESSED[0]..PRESSED[1]).contains(&cycle));
         let mut measurement = Measurement {
-            q: job.origin.posture,
+            q: ready.origin.posture,
             dq: zeros(),
             interval_s: T::from_f64(CYCLE_S),
         };
         if cycle == SPOILT {
             measurement.dq[3] = T::ONE / T::ZERO;
         }
-        let output = machine.cycle(&measurement, &job.origin);
+        let output = interlocked.cycle(&measurement, &ready.origin);
         as_expected &= output.stopped == expected(cycle)
             && (output.stopped.is_none() || output.torque.iter().all(|&torque| torque == T::ZERO));
         seen(cycle, &output);
         delay.delay_us((CYCLE_S * 1e6) as u32);
     }
-    machine.release();
+    interlocked.release();
     Some(as_expected)
 }
 

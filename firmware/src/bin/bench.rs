@@ -5,7 +5,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 use controller_core::{ConfigError, Controller, Measurement, Reference, Step};
-use firmware::job::{self, JobKind};
+use firmware::scenario::{self, FixedScenario};
 use firmware::stages::{Rig, Survey};
 use firmware::workload;
 
@@ -19,8 +19,8 @@ use cortex_m_semihosting::hprintln as say;
 macro_rules! measured {
     ($float:ident, $build:ident, $cycle:ident) => {
         #[inline(never)]
-        fn $build(kind: JobKind) -> Result<Controller<$float>, ConfigError> {
-            job::controller(kind)
+        fn $build(scenario: FixedScenario) -> Result<Controller<$float>, ConfigError> {
+            scenario::controller(scenario)
         }
 
         #[inline(never)]
@@ -66,12 +66,12 @@ fn main() {
         }
     }
 
-    for kind in JobKind::ALL {
-        if let Ok(mut rig) = build_f64(kind).map(Rig::new) {
-            print_inputs(kind.name(), "f64", &survey(&mut rig, &Still, cycle_f64));
+    for scenario in FixedScenario::ALL {
+        if let Ok(mut rig) = build_f64(scenario).map(Rig::new) {
+            print_inputs(scenario.name(), "f64", &survey(&mut rig, &Still, cycle_f64));
         }
-        if let Ok(mut rig) = build_f32(kind).map(Rig::new) {
-            print_inputs(kind.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
+        if let Ok(mut rig) = build_f32(scenario).map(Rig::new) {
+            print_inputs(scenario.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
         }
     }
 }
@@ -114,9 +114,9 @@ mod target {
         let board = Board(Counter::start());
         say!("calibration {}", overhead(&board));
         let mut complete = true;
-        for kind in JobKind::ALL {
-            complete &= measure(kind, &board, build_f64, cycle_f64);
-            complete &= measure(kind, &board, build_f32, cycle_f32);
+        for scenario in FixedScenario::ALL {
+            complete &= measure(scenario, &board, build_f64, cycle_f64);
+            complete &= measure(scenario, &board, build_f32, cycle_f32);
         }
         sizes::<f64>();
         sizes::<f32>();
@@ -127,16 +127,16 @@ mod target {
     type CycleOf<T> = fn(&mut Rig<T>, &Measurement<T>, &Reference<T>) -> Step<T>;
 
     fn measure<T: Number>(
-        kind: JobKind,
+        scenario: FixedScenario,
         board: &Board,
-        build: fn(JobKind) -> Result<Controller<T>, ConfigError>,
+        build: fn(FixedScenario) -> Result<Controller<T>, ConfigError>,
         cycle: CycleOf<T>,
     ) -> bool {
-        let name = kind.name();
+        let name = scenario.name();
         let init = high_water(|| {
-            let _ = black_box(build(black_box(kind)));
+            let _ = black_box(build(black_box(scenario)));
         });
-        let Ok(mut rig) = build(kind).map(Rig::new) else {
+        let Ok(mut rig) = build(scenario).map(Rig::new) else {
             return false;
         };
         let found = survey(&mut rig, board, cycle);

@@ -21,10 +21,10 @@ mod target {
     use cortex_m_rt::entry;
     use cortex_m_semihosting::hprintln;
     use embedded_hal::digital::InputPin;
-    use firmware::guard::Guard;
-    use firmware::job::JobKind;
+    use firmware::interlock::Interlock;
+    use firmware::interlocked_session::{self, Event, FixedScenarioSource, InterlockedSession};
     use firmware::mps2::{self, Counter, Ethernet, HostFile, HostSwitch, Led, Memory, Uart};
-    use firmware::remote::{self, Event, JobSource, Remote};
+    use firmware::scenario::FixedScenario;
 
     /// After how long without a datagram the robot counts as gone \[s\].
     const SILENCE_S: f64 = 2.0;
@@ -54,13 +54,16 @@ mod target {
     }
 
     fn run<L: DatagramLink>(link: L, set_time: impl Fn(&mut L, f64)) -> ! {
-        let kind = JobKind::TwoLevel;
-        let (Ok(config), Ok(source)) = (remote::config(kind), JobSource::new(kind)) else {
+        let scenario = FixedScenario::TwoLevel;
+        let (Ok(config), Ok(source)) = (
+            interlocked_session::config(scenario),
+            FixedScenarioSource::new(scenario),
+        ) else {
             hprintln!("fri: refused");
             mps2::exit(false)
         };
-        let guard = Guard::new(HostSwitch::new(c"e-stop"), Led::new(0), Led::new(1));
-        let mut remote = Remote::new(config, source, link, guard, SILENCE_S);
+        let interlock = Interlock::new(HostSwitch::new(c"e-stop"), Led::new(0), Led::new(1));
+        let mut interlocked = InterlockedSession::new(config, source, link, interlock, SILENCE_S);
         let counter = Counter::start();
         let (mut last, mut time_s) = (counter.ticks(), 0.0);
         let (mut phase, mut stopped, mut answered) = (Phase::Waiting, None, 0u32);
@@ -68,8 +71,8 @@ mod target {
             let ticks = counter.ticks();
             let elapsed_s = f64::from(ticks.wrapping_sub(last)) * TICK_S;
             (last, time_s) = (ticks, time_s + elapsed_s);
-            set_time(remote.link(), time_s);
-            match remote.poll(elapsed_s) {
+            set_time(interlocked.link(), time_s);
+            match interlocked.poll(elapsed_s) {
                 Ok(Event::Quiet | Event::Refused) => {}
                 Ok(Event::Answered {
                     phase: now,
@@ -77,7 +80,7 @@ mod target {
                 }) => {
                     answered += 1;
                     if now != phase || cause != stopped {
-                        let t_s = remote.session().last().map_or(0.0, |cycle| cycle.t_s);
+                        let t_s = interlocked.session().last().map_or(0.0, |cycle| cycle.t_s);
                         let (drives, heartbeat) = (Led::new(0).is_on(), Led::new(1).is_on());
                         hprintln!(
                             "cycle {} t {:.3} s {}: drives {} heartbeat {} {:?}",
@@ -108,7 +111,7 @@ mod target {
             }
             if phase == Phase::Finished {
                 let pulled = HostSwitch::new(c"e-stop").is_low() == Ok(true);
-                finish(answered, !pulled && remote.session().fault().is_none());
+                finish(answered, !pulled && interlocked.session().fault().is_none());
             }
         }
     }

@@ -13,8 +13,8 @@ use controller_core::{
     Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
     TaskSet,
 };
-use firmware::job::{self, JobKind};
 use firmware::log::Number;
+use firmware::scenario::{self, FixedScenario};
 
 /// A level on a link with so many rows.
 const fn level(link: Link, rows: usize) -> Task {
@@ -41,7 +41,7 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
     ];
     let used = levels.get(..ROWS.div_ceil(3)).unwrap_or_default();
     let (Ok(mut config), Ok(tasks)) = (
-        job::config(JobKind::TwoLevel),
+        scenario::config(FixedScenario::TwoLevel),
         TaskSet::new(black_box(used)),
     ) else {
         return false;
@@ -50,11 +50,11 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
     let Ok(controller) = Controller::<T>::new(black_box(&LWR_IV), black_box(&config)) else {
         return false;
     };
-    let q = JobKind::TwoLevel.start_deg().map(f64::to_radians);
+    let q = FixedScenario::TwoLevel.start_deg().map(f64::to_radians);
     let measurement = black_box(Measurement {
         q: q.map(T::from_f64).into(),
         dq: [T::HALF; 7].into(),
-        interval_s: T::from_f64(job::CYCLE_S),
+        interval_s: T::from_f64(scenario::CYCLE_S),
     });
     let mut reference = Reference::hold(controller.level_count(), measurement.q);
     reference.targets_mut().fill(Target::position([T::HALF; 3]));

@@ -25,7 +25,7 @@ fn main() -> std::process::ExitCode {
     });
     match written {
         Ok(()) => {
-            println!("{path}: two jobs, two precisions, {cycles} cycles each");
+            println!("{path}: two scenarios, two precisions, {cycles} cycles each");
             0.into()
         }
         Err(error) => {
@@ -39,9 +39,9 @@ fn main() -> std::process::ExitCode {
 mod target {
     use cortex_m_rt::entry;
     use cortex_m_semihosting::hprintln;
-    use firmware::job::Job;
     use firmware::log::{CYCLE_BYTES, Comparison, HEADER_BYTES, Header, NUMBERS, Number, replay};
     use firmware::mps2::{self, HostFile};
+    use firmware::scenario::ReadyScenario;
 
     #[panic_handler]
     fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
@@ -71,11 +71,11 @@ mod target {
     }
 
     fn run<T: Number>(file: &mut HostFile, header: Header) -> bool {
-        let Ok(job) = Job::<T>::new(header.job) else {
-            hprintln!("{} {}: refused", header.job.name(), T::NAME);
+        let Ok(ready) = ReadyScenario::<T>::new(header.scenario) else {
+            hprintln!("{} {}: refused", header.scenario.name(), T::NAME);
             return false;
         };
-        let found = replay(&job, header.cycles, || {
+        let found = replay(&ready, header.cycles, || {
             let mut bytes = [0; CYCLE_BYTES];
             file.read(bytes.get_mut(..NUMBERS * T::BYTES)?)
                 .then_some(bytes)
@@ -87,7 +87,7 @@ mod target {
     fn report(header: &Header, precision: &str, found: &Comparison) {
         hprintln!(
             "{:<9} {}: {} of {} cycles x 7 torques, {} differing bits, {} faults",
-            header.job.name(),
+            header.scenario.name(),
             precision,
             found.cycles,
             header.cycles,

@@ -12,32 +12,18 @@ use std::ops::Range;
 use std::panic::catch_unwind;
 
 use fri::{Command, CommandPacket, Error, Measurement, MeasurementPacket};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// Room for what is longer than both.
 const ROOM: usize = 1024;
 
-/// xorshift64*: a state that is never zero, the better half of each product.
-struct Random(u64);
+struct Random(ChaCha8Rng);
 
 impl Random {
-    fn new(seed: u64) -> Self {
-        // One step of splitmix64: nearby seeds become unrelated states.
-        let mut z = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        Self((z ^ (z >> 31)).max(1))
-    }
-
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 32) as u32
-    }
-
     /// 0 to n - 1.
     fn below(&mut self, n: usize) -> usize {
-        ((u64::from(self.next()) * n as u64) >> 32) as usize
+        ((u64::from(self.0.next_u32()) * n as u64) >> 32) as usize
     }
 
     fn pick<T: Copy>(&mut self, from: &[T]) -> T {
@@ -194,7 +180,7 @@ impl Datagram {
             2 if self.length > 0 => {
                 for _ in 0..=random.below(4) {
                     let at = random.below(self.length);
-                    let any = random.next() as u8;
+                    let any = random.0.next_u32() as u8;
                     self.bytes[at] = random.pick(&[0x00, 0x01, 0x7F, 0x80, 0xFF, any]);
                 }
             }
@@ -231,7 +217,7 @@ impl Datagram {
                     f32::MIN_POSITIVE.to_bits(),
                     1, // the smallest
                     (-0.0f32).to_bits(),
-                    random.next(),
+                    random.0.next_u32(),
                 ];
                 self.put(at, &random.pick(&extremes).to_le_bytes());
             }
@@ -239,7 +225,7 @@ impl Datagram {
             _ => {
                 let fields = [0, 2, 4, 6, 136, 138, 140, 144, 146, 178, 180, 182, 184];
                 let at = random.pick(&fields);
-                let any = random.next() as u16;
+                let any = random.0.next_u32() as u16;
                 let extremes = [0, 1, 2, 3, 4, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF, any];
                 let lengths = [375, 376, 377, 915, 916, 917, 0x1005, 0x2006];
                 let value = match random.below(3) {
@@ -295,7 +281,7 @@ impl fmt::Display for Table {
 /// The first datagram that is not treated as it must be: number, reason, bytes.
 pub fn run(count: u64, seed: u64) -> Result<Table, String> {
     let kinds = kinds();
-    let mut random = Random::new(seed);
+    let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
     let mut rows = [0, 1].map(|i: usize| (kinds[i].name, [0; OUTCOMES.len()]));
     for number in 0..count {
         let i = random.below(2);

@@ -3,13 +3,13 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::experiment::Instant;
-use crate::invalid::Invalid;
 use crate::output::{self, Draft};
 use crate::report::{self, Choices, Recording};
-use crate::scenario::Scenario;
 use crate::summary::Summary;
 use crate::trace::Trace;
+use cell::invalid::Invalid;
+use cell::scenario::Scenario;
+use record::run::Sample;
 
 /// Files on their way: nothing is seen of them before [`Files::finish`].
 pub struct Files {
@@ -38,8 +38,8 @@ impl Files {
     ///
     /// # Errors
     /// The disk.
-    pub fn push(&mut self, scenario: &Scenario, instant: &Instant<'_>) -> io::Result<()> {
-        self.recording.record(scenario, instant);
+    pub fn push(&mut self, scenario: &Scenario, instant: &Sample) -> io::Result<()> {
+        self.recording.push(scenario, instant);
         self.trace.push(instant)
     }
 

@@ -9,16 +9,16 @@ use clap::Args;
 use controller_core::Controller;
 
 use super::files::Files;
-use super::values::{dead_cycles, number, seed};
 use crate::controllers::ControllerKind;
 use crate::experiment::Experiment;
-use crate::invalid::{Invalid, in_range, positive};
-use crate::names::{MeasurementKind, Named, NullStiffness, Switch};
-use crate::plant::{PlantKind, PlantOptions};
+use crate::plant::PlantOptions;
 use crate::report::Choices;
-use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::summary::Summary;
-use crate::terminal::{print, show, tell};
+use cell::arguments::values::{dead_cycles, number, seed};
+use cell::invalid::{Invalid, in_range, positive};
+use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
+use cell::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use cell::terminal::{print, show, tell};
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.

@@ -7,19 +7,19 @@ use clap::Args;
 
 use super::files::Files;
 use super::run::{footer, heading, quoted, switch, table};
-use super::values::{dead_cycles, number, peer, seed};
-use crate::experiment::Instant;
-use crate::invalid::{Invalid, in_range, positive};
 use crate::link::{Fault, Window};
-use crate::names::{MeasurementKind, Named};
-use crate::plant::{PlantKind, PlantOptions};
+use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
 };
-use crate::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
 use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
-use crate::terminal::{print, tell};
+use cell::arguments::values::{dead_cycles, number, peer, seed};
+use cell::invalid::{Invalid, in_range, positive};
+use cell::names::{MeasurementKind, Named, PlantKind};
+use cell::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use cell::terminal::{print, tell};
+use record::run::Sample;
 
 /// Exit code when no client came, or none that could be let into command state.
 const NO_CLIENT: u8 = 4;
@@ -201,7 +201,7 @@ impl ServeOptions {
         ));
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
-        let mut sink = |instant: &Instant<'_>| files.push(&scenario, instant);
+        let mut sink = |instant: &Sample| files.push(&scenario, instant);
         let end = service
             .run(&mut robot, &mut operator, &mut client, &mut sink)
             .map_err(|error| Invalid::line(error).within(&service.client))?;

@@ -8,10 +8,10 @@ use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::ControllerKind;
-use crate::invalid::{Invalid, in_range};
-use crate::names::Named;
-use crate::reworded::reworded;
-use crate::scenario::{PointSpec, TaskSpec, joints};
+use cell::invalid::{Invalid, in_range};
+use cell::names::Named;
+use cell::reworded::reworded;
+use cell::scenario::{PointSpec, TaskSpec, joints};
 
 /// One control cycle. SI units, base-plate frame.
 #[derive(Clone, Debug, Deserialize)]
@@ -176,7 +176,7 @@ impl Input {
             for gain in observer.gain {
                 in_range("observer.gain", gain, 0.0, 1e9)?;
             }
-            crate::invalid::positive("observer.h", observer.h, 10.0)?;
+            cell::invalid::positive("observer.h", observer.h, 10.0)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::invalid::{Invalid, in_range};
+use cell::invalid::{Invalid, in_range};
 
 /// Longest delay and jitter \[ms\].
 const DELAY_MAX_MS: f64 = 10_000.0;

@@ -8,10 +8,10 @@ use super::stability::{CYCLES_MS, Evidence};
 use crate::controllers::ControllerKind::{
     AccelerationLevel, AccelerationLevelEstimate, AsPrinted, Hierarchical, Literal, NoObserver,
 };
-use crate::names::NullStiffness;
-use crate::plant::PlantKind::{Ideal, Realistic};
 use crate::report::ticks;
 use crate::summary::Summary;
+use cell::names::NullStiffness;
+use cell::names::PlantKind::{Ideal, Realistic};
 
 /// What became of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

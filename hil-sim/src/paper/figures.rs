@@ -8,11 +8,11 @@ use super::stability::{CYCLES_MS, Evidence};
 use crate::controllers::ControllerKind::{
     self, AccelerationLevel, AccelerationLevelEstimate, Hierarchical, NoObserver,
 };
-use crate::names::{Named, NullStiffness};
-use crate::plant::PlantKind::Realistic;
 use crate::report::plot::{Chart, Panel, Scale, Series, Stroke, Style};
 use crate::report::svg::Svg;
 use crate::report::{Recording, Run, diagram, scene};
+use cell::names::PlantKind::Realistic;
+use cell::names::{Named, NullStiffness};
 
 /// A drawing with its caption.
 pub struct Figure {

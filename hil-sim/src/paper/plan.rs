@@ -5,11 +5,11 @@ use crate::controllers::ControllerKind::{
     NoObserver,
 };
 use crate::experiment::Experiment;
-use crate::invalid::Invalid;
-use crate::names::{MeasurementKind, Named, NullStiffness};
-use crate::plant::PlantKind::{self, Ideal, Realistic};
 use crate::plant::PlantOptions;
-use crate::scenario::{PostureSpec, ReferenceSpec, Scenario};
+use cell::invalid::Invalid;
+use cell::names::PlantKind::{self, Ideal, Realistic};
+use cell::names::{MeasurementKind, Named, NullStiffness};
+use cell::scenario::{PostureSpec, ReferenceSpec, Scenario};
 
 /// Seeds over which figures of the realistic plant are the worst.
 pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;

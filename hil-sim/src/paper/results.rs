@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use super::plan::{Family, Planned};
-use crate::invalid::Invalid;
 use crate::report::Recording;
-use crate::scenario::Scenario;
 use crate::summary::Summary;
+use cell::invalid::Invalid;
+use cell::scenario::Scenario;
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -140,7 +140,7 @@ fn execute(run: &Planned) -> Result<Outcome, Invalid> {
             &controller,
             |instant| {
                 if let Some(recording) = &mut recording {
-                    recording.record(scenario, instant);
+                    recording.push(scenario, instant);
                 }
                 Ok(())
             },

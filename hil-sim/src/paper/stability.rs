@@ -24,9 +24,11 @@ use controller_core::law::null_space::{Compliance, Posture};
 use controller_core::{Controller, ControllerConfig, Measurement, Reference, State, Target};
 use serde::Serialize;
 
-use crate::invalid::Invalid;
-use crate::plant::{Plant, PlantKind};
-use crate::scenario::Scenario;
+use crate::arm_points::origins;
+use crate::plant::Plant;
+use cell::invalid::Invalid;
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 
 /// Cycle times of the runs \[ms\].
 pub const CYCLES_MS: [f64; 3] = [2.0, 1.0, 0.5];
@@ -111,7 +113,7 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
     };
 
     let mut reference = Reference::hold(controller.level_count(), scenario.start());
-    let origins = scenario.origins_at(&scenario.start());
+    let origins = origins(&scenario, &scenario.start());
     for (target, origin) in reference.targets_mut().iter_mut().zip(origins) {
         *target = origin;
         if let (Target::Position { x, .. }, true) = (target, kind != Kind::NullSpace) {

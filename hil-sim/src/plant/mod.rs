@@ -26,6 +26,7 @@ mod options;
 pub mod sensor;
 pub mod stiction;
 
+use cell::names::PlantKind;
 use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointState, JointVector};
 
@@ -38,21 +39,12 @@ pub use mismatch::mismatched;
 pub use model::PlantModel;
 pub use noise::Rng;
 pub(crate) use options::DeadTime;
-pub use options::{DEAD_CYCLES_MAX, PlantOptions};
+pub use options::PlantOptions;
 pub use sensor::Sensor;
 
 /// Standard deviation of the torque noise \[Nm\] per joint, of one draw per
 /// cycle that holds for the cycle.
 pub const TORQUE_NOISE: [f64; 7] = [0.1, 0.1, 0.1, 0.1, 0.05, 0.03, 0.01];
-
-/// How much of a real arm the plant imitates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlantKind {
-    /// Exact model, no friction, no noise, true state measured.
-    Ideal,
-    /// Friction, mismatched masses, torque noise, encoders.
-    Realistic,
-}
 
 /// A simulated arm and its state.
 #[derive(Clone, Debug)]
@@ -99,7 +91,7 @@ impl Plant {
     /// equilibrium with the arm's true weight.
     ///
     /// # Panics
-    /// More than [`DEAD_CYCLES_MAX`] dead cycles.
+    /// More than [`ranges::DEAD_CYCLES_MAX`](controller_core::ranges::DEAD_CYCLES_MAX) dead cycles.
     #[must_use]
     pub fn with_options(
         kind: PlantKind,

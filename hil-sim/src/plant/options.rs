@@ -1,9 +1,11 @@
 //! What the plant can imitate beyond the reference behaviour.
 
+use controller_core::cycle::delay::Delay;
 use controller_core::joint::JointVector;
+use controller_core::ranges;
 
-/// Largest dead time, in cycles.
-pub const DEAD_CYCLES_MAX: usize = 8;
+/// Largest dead time, in cycles: that of the controller.
+const DEAD_CYCLES_MAX: usize = ranges::DEAD_CYCLES_MAX as usize;
 
 /// Effects that the reference plant leaves out. The default is the reference
 /// plant, to the last bit.
@@ -18,7 +20,7 @@ pub struct PlantOptions {
     /// Springs between motors and links ([`super::elastic`]).
     pub elasticity: bool,
     /// Cycles between a torque command and its effect, 0 to
-    /// [`DEAD_CYCLES_MAX`].
+    /// [`ranges::DEAD_CYCLES_MAX`].
     pub dead_cycles: usize,
     /// How many times as many integration steps as the reference; 0 counts as 1.
     /// Says how large the integration error is.
@@ -37,10 +39,9 @@ impl PlantOptions {
 /// cycles later.
 #[derive(Clone, Debug)]
 pub(crate) struct DeadTime {
-    /// The first `cycles` entries are a ring of the commands under way \[Nm\].
-    ring: [JointVector<f64>; DEAD_CYCLES_MAX],
-    cycles: usize,
-    next: usize,
+    sent: Delay<f64>,
+    cycles: u8,
+    before: JointVector<f64>,
 }
 
 impl DeadTime {
@@ -52,20 +53,15 @@ impl DeadTime {
             "{cycles} dead cycles; allowed: 0 to {DEAD_CYCLES_MAX}"
         );
         Self {
-            ring: [torque; DEAD_CYCLES_MAX],
-            cycles,
-            next: 0,
+            sent: Delay::new(),
+            cycles: cycles as u8,
+            before: torque,
         }
     }
 
     /// One cycle: takes this cycle's command \[Nm\], gives the one that arrives.
     pub fn pass(&mut self, command: &JointVector<f64>) -> JointVector<f64> {
-        if self.cycles == 0 {
-            return *command;
-        }
-        let arrived = core::mem::replace(&mut self.ring[self.next], *command);
-        self.next = (self.next + 1) % self.cycles;
-        arrived
+        self.sent.send(self.cycles, command, &self.before)
     }
 }
 

@@ -3,11 +3,12 @@
 use controller_core::joint::DOF;
 
 use super::plot::{Chart, LimitLine, Mark, Panel, Scale, Series, Stroke, Style};
+use super::run::Run;
+use super::scene;
 use super::svg::Svg;
 use super::ticks::plain;
-use super::{Run, scene};
-use crate::metrics::Metric;
 use crate::summary::Verdict;
+use cell::scenario::Metric;
 
 /// Below this, a task acceleration is rounding \[m/s2\].
 const LEAK_FLOOR: f64 = 1e-18;
@@ -91,9 +92,9 @@ fn task_error(run: &Run<'_>) -> Figure {
             Style::solid(index),
         );
         let title = if count == 1 {
-            "task error [mm]".to_string()
+            format!("task error [{}]", level.unit().suffix())
         } else {
-            format!("level {} [mm]", index + 1)
+            format!("level {} [{}]", index + 1, level.unit().suffix())
         };
         let mut panel = Panel::new(
             title,

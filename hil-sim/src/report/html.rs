@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::svg::escape;
 use super::ticks::plain;
 use super::{Run, diagram, figures, palette, tables};
-use crate::scenario::Scenario;
 use crate::summary::{Summary, Verdict};
+use cell::scenario::Scenario;
 
 const PAGE_CSS: &str = include_str!("page.css");
 
@@ -204,7 +204,7 @@ fn command(run: &Run<'_>) -> String {
         summary.controller,
         summary.seed
     );
-    let stiffness = crate::names::Named::name(run.choices.null_stiffness);
+    let stiffness = cell::names::Named::name(run.choices.null_stiffness);
     if stiffness != "normal" {
         let _ = write!(line, " --null-stiffness {stiffness}");
     }
@@ -226,14 +226,16 @@ fn command(run: &Run<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::recording::{ArmSnapshot, Cycle, LevelCycle, Recording};
+    use super::super::recording::{ArmSnapshot, Recording};
     use super::super::svg::well_formed;
     use super::*;
     use crate::controllers::ControllerKind;
     use crate::experiment::Experiment;
-    use crate::names::{MeasurementKind, NullStiffness};
-    use crate::plant::{PlantKind, PlantOptions};
-    use controller_core::joint::JointVector;
+    use crate::plant::PlantOptions;
+    use cell::names::PlantKind;
+    use cell::names::{MeasurementKind, NullStiffness};
+    use controller_core::joint::{JointState, JointVector};
+    use record::run::{LevelSample, Sample};
 
     /// A short real summary, and a recording with what `value` gives.
     fn run(value: f64) -> (Summary, Scenario, Recording) {
@@ -254,20 +256,29 @@ mod tests {
         let mut recording = Recording::new(&scenario, true);
         let joints = JointVector::repeat(value);
         for k in 0..100 {
-            recording.push(&Cycle {
+            let level = LevelSample {
+                error: value,
+                leak: value,
+                desired_point: [value; 3],
+                actual_point: [value; 3],
+                ..LevelSample::default()
+            };
+            let sample = Sample {
                 t_s: f64::from(k) * 2e-3,
-                q: &joints,
-                residual: &joints,
-                tau_ext: &joints,
-                conditioning: &[value; 7],
-                levels: &[LevelCycle {
-                    error: value,
-                    leak: value,
-                    desired: [value; 3],
-                    actual: [value; 3],
-                }],
-                hand_force_n: Some(value),
-            });
+                state: JointState {
+                    q: joints,
+                    dq: joints,
+                },
+                torque: joints,
+                residual: joints,
+                saturated: false,
+                rank: false,
+                tau_ext: joints,
+                hand_force_n: value,
+                conditioning: vec![value; 7],
+                levels: vec![level],
+            };
+            recording.push(&scenario, &sample);
         }
         recording.arms.push(ArmSnapshot {
             t_s: 0.0,

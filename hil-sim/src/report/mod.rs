@@ -1,6 +1,6 @@
 //! Reports: what a run was, whether it passed, and the figures that show why.
 //!
-//! Bottom-up: [`recording`] keeps the time series of a run; [`svg`] writes
+//! Bottom-up: [`recording`] keeps the time series of a run, [`Run`] what it was; [`svg`] writes
 //! drawings; [`ticks`] finds round numbers for axes; [`plot`] draws line charts
 //! of stacked panels; [`scene`] draws paths and arm postures; [`diagram`] the
 //! controller as blocks; [`figures`](mod@figures) are those of a run, and
@@ -15,6 +15,7 @@ pub mod html;
 pub mod palette;
 pub mod plot;
 pub mod recording;
+mod run;
 pub mod scene;
 pub mod svg;
 pub(crate) mod tables;
@@ -24,175 +25,5 @@ pub use diagram::block_diagram;
 pub use figures::figures;
 pub use html::run_report;
 pub use recording::Recording;
+pub use run::{Choices, Run, letter};
 pub use scene::snapshots;
-
-use crate::contact::{Hand, Interval, Push};
-use crate::experiment::Experiment;
-use crate::names::{MeasurementKind, NullStiffness};
-use crate::plant::PlantOptions;
-use crate::scenario::Scenario;
-use crate::summary::{CLIENT, Summary, Verdict};
-
-/// A finished run, as the figures and the report need it.
-#[derive(Clone, Copy, Debug)]
-pub struct Run<'a> {
-    /// What it reached.
-    pub summary: &'a Summary,
-    /// What it was.
-    pub scenario: &'a Scenario,
-    /// Its time series.
-    pub recording: &'a Recording,
-    /// What was chosen besides the scenario.
-    pub choices: Choices,
-    /// The command that repeats it; none: put together from the summary.
-    pub command: Option<&'a str>,
-}
-
-/// Choices of a run that change what acts, and that its summary does not name.
-#[derive(Clone, Copy, Debug)]
-pub struct Choices {
-    /// Factor on the scenario's null-space stiffness.
-    pub null_stiffness: NullStiffness,
-    /// How the controller saw the arm.
-    pub measurement: MeasurementKind,
-    /// What the plant did beyond the reference.
-    pub options: PlantOptions,
-}
-
-impl Default for Choices {
-    fn default() -> Self {
-        Self {
-            null_stiffness: NullStiffness::Normal,
-            measurement: MeasurementKind::Direct,
-            options: PlantOptions::default(),
-        }
-    }
-}
-
-impl Choices {
-    /// Those of an experiment.
-    #[must_use]
-    pub fn of(experiment: &Experiment) -> Self {
-        Self {
-            null_stiffness: experiment.null_stiffness,
-            measurement: experiment.measurement,
-            options: experiment.options,
-        }
-    }
-
-    /// Whether the null-space damping is c M and not the scenario's D.
-    fn has_inertia_damping(&self) -> bool {
-        self.measurement == MeasurementKind::Fri || self.options.dead_cycles > 0
-    }
-}
-
-impl<'a> Run<'a> {
-    /// A run with nothing chosen besides the scenario.
-    #[must_use]
-    pub fn new(summary: &'a Summary, scenario: &'a Scenario, recording: &'a Recording) -> Self {
-        Self {
-            summary,
-            scenario,
-            recording,
-            choices: Choices::default(),
-            command: None,
-        }
-    }
-
-    /// The scripted pushes that acted.
-    #[must_use]
-    pub fn pushes(&self) -> &'a [Push] {
-        if self.summary.contacts {
-            &self.scenario.pushes
-        } else {
-            &[]
-        }
-    }
-
-    /// The hands that acted.
-    #[must_use]
-    pub fn hands(&self) -> &'a [Hand] {
-        if self.summary.contacts {
-            &self.scenario.hands
-        } else {
-            &[]
-        }
-    }
-
-    /// Whether a client on the robot link controlled the arm: its gains are unknown.
-    #[must_use]
-    pub fn by_client(&self) -> bool {
-        self.summary.controller == CLIENT
-    }
-
-    /// Whether the run came as far as `t_s`; only a stopped one may not have.
-    #[must_use]
-    pub fn reached(&self, t_s: f64) -> bool {
-        self.summary.verdict != Verdict::Stopped
-            || self.recording.t().last().is_some_and(|&end| t_s <= end)
-    }
-
-    /// When someone or something touched the arm: the pushes, then the hands,
-    /// lettered in this order, as far as the run came.
-    #[must_use]
-    pub fn bands(&self) -> Vec<plot::Band> {
-        let pushes = self.pushes().iter().map(Push::interval);
-        let intervals = pushes
-            .chain(self.hands().iter().map(Hand::interval))
-            .enumerate();
-        intervals
-            .filter(|(_, interval)| self.reached(interval.from_s))
-            .map(|(index, Interval { from_s, to_s, .. })| plot::Band {
-                from: from_s,
-                to: to_s,
-                label: letter(index),
-            })
-            .collect()
-    }
-
-    /// "two-level, hierarchical, realistic plant, seed 1".
-    #[must_use]
-    pub fn label(&self) -> String {
-        let Summary {
-            scenario,
-            controller,
-            plant,
-            seed,
-            ..
-        } = self.summary;
-        format!("{scenario}, {controller}, {plant} plant, seed {seed}")
-    }
-}
-
-/// Letters that number contacts: A to Z, then AA, AB and so on.
-#[must_use]
-pub fn letter(index: usize) -> String {
-    let mut letters = Vec::new();
-    let mut rest = index + 1;
-    while rest > 0 {
-        rest -= 1;
-        letters.push(char::from(b'A' + (rest % 26) as u8));
-        rest /= 26;
-    }
-    letters.iter().rev().collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::letter;
-
-    #[test]
-    fn letters_go_on_after_z() {
-        let known = [
-            (0, "A"),
-            (25, "Z"),
-            (26, "AA"),
-            (51, "AZ"),
-            (52, "BA"),
-            (702, "AAA"),
-        ];
-        for (index, name) in known {
-            assert_eq!(letter(index), name);
-        }
-    }
-}

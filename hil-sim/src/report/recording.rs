@@ -5,50 +5,18 @@
 //! [`CAPACITY`] rows, two for every block of cycles, the extremes in the order
 //! in which they came. A peak of one cycle is kept, whatever the length.
 
-use controller_core::joint::{DOF, JointState, JointVector};
+use cell::scenario::Scenario;
+use controller_core::joint::JointState;
+use record::channel::{Channel, Value};
+use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
-use crate::experiment::{Instant, LevelInstant};
 use crate::plant::PlantModel;
-use crate::scenario::Scenario;
 
 /// Most rows that are kept.
 pub const CAPACITY: usize = 1 << 15;
 
 /// Instants of arm postures where no contact says when to look.
 const FREE_SNAPSHOTS: usize = 5;
-
-/// What one cycle adds, in SI units.
-#[derive(Clone, Copy, Debug)]
-pub struct Cycle<'a> {
-    /// Time \[s\].
-    pub t_s: f64,
-    /// True joint positions \[rad\].
-    pub q: &'a JointVector<f64>,
-    /// r \[Nm\], tends to -tau_ext.
-    pub residual: &'a JointVector<f64>,
-    /// True tau_ext \[Nm\] of M ddq + C dq + g = tau - tau_ext.
-    pub tau_ext: &'a JointVector<f64>,
-    /// |R_kk| per task row; the rest is not looked at. May be empty.
-    pub conditioning: &'a [f64],
-    /// Every level's part, highest priority first.
-    pub levels: &'a [LevelCycle],
-    /// Force of a person's hand \[N\], where one is simulated.
-    pub hand_force_n: Option<f64>,
-}
-
-/// What one cycle adds to a level.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LevelCycle {
-    /// Norm of the task error \[m\], or \[rad\].
-    pub error: f64,
-    /// Norm of the task acceleration that lower levels cause \[m/s2\]; NaN
-    /// where it is not known.
-    pub leak: f64,
-    /// Desired position of the level's point \[m\].
-    pub desired: [f64; 3],
-    /// Its true position \[m\].
-    pub actual: [f64; 3],
-}
 
 /// The arm's joint centres at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,26 +53,54 @@ impl ArmSnapshot {
 #[derive(Clone, Debug)]
 pub struct Recording {
     t: Vec<f64>,
+    /// The columns of the series channels, those of the levels behind them.
     columns: Vec<Vec<f64>>,
     block: Vec<Vec<f64>>,
     block_t: Vec<f64>,
     block_len: usize,
     levels: usize,
     rows: usize,
+    has_hands: bool,
     snapshots_due: Vec<f64>,
+    arm: PlantModel,
     /// Postures at the start and while the contacts press.
     pub arms: Vec<ArmSnapshot>,
 }
 
-// Columns: residual, tau_ext, q and conditioning take one per joint or row,
-// then the hand, then the levels.
-const RESIDUAL: usize = 0;
-const TAU_EXT: usize = DOF;
-const Q: usize = 2 * DOF;
-const CONDITIONING: usize = 3 * DOF;
-const HAND: usize = 4 * DOF;
-const LEVELS: usize = HAND + 1;
-const PER_LEVEL: usize = 8;
+/// Series of a run: time apart, it is what they are drawn over.
+fn series<S>(channels: &[Channel<S>]) -> impl Iterator<Item = &Channel<S>> {
+    let drawn = channels
+        .iter()
+        .filter(|channel| channel.place.is_in_series());
+    drawn.filter(|channel| channel.columns != "t")
+}
+
+/// Axes of a point in series.
+fn axes() -> Vec<String> {
+    ["x", "y", "z"].map(String::from).to_vec()
+}
+
+/// Number of columns of series.
+fn width<S>(channels: &[Channel<S>]) -> usize {
+    series(channels)
+        .map(|channel| channel.names(0, &axes()).len())
+        .sum()
+}
+
+/// Index of the first column of the channel with these columns.
+fn place<S>(channels: &[Channel<S>], columns: &str) -> usize {
+    let before = series(channels).take_while(|channel| channel.columns != columns);
+    before.map(|channel| channel.names(0, &axes()).len()).sum()
+}
+
+/// A value in the unit that a report shows: degrees, thousandths of an error.
+fn shown(columns: &str, value: f64) -> f64 {
+    match columns {
+        "q{joint}" => value.to_degrees(),
+        "e{level}" => value * 1e3,
+        _ => value,
+    }
+}
 
 impl Recording {
     /// An empty recording for all cycles of `scenario`. `contacts` says
@@ -112,7 +108,7 @@ impl Recording {
     #[must_use]
     pub fn new(scenario: &Scenario, contacts: bool) -> Self {
         let levels = scenario.levels.len();
-        let columns = LEVELS + PER_LEVEL * levels;
+        let columns = width(CHANNELS) + levels * width(LEVEL_CHANNELS);
         Self {
             t: Vec::new(),
             columns: vec![Vec::new(); columns],
@@ -121,65 +117,40 @@ impl Recording {
             block_len: block_len(scenario.cycles()),
             levels,
             rows: scenario.levels.iter().map(|level| level.axes.len()).sum(),
+            has_hands: !scenario.hands.is_empty(),
             snapshots_due: snapshot_times(scenario, contacts),
+            arm: PlantModel::new(scenario.arm()),
             arms: Vec::new(),
         }
     }
 
     /// Adds a cycle.
-    pub fn push(&mut self, cycle: &Cycle<'_>) {
-        self.block_t.push(cycle.t_s);
+    pub fn push(&mut self, scenario: &Scenario, sample: &Sample) {
+        self.block_t.push(sample.t_s);
         let mut columns = self.block.iter_mut();
-        let mut put = |value: f64| {
+        let mut put = |name: &str, value: Value| {
+            let number = match value {
+                Value::Number(number) if name != "hand_force" || self.has_hands => number,
+                _ => f64::NAN,
+            };
             if let Some(column) = columns.next() {
-                column.push(value);
+                column.push(shown(name, number));
             }
         };
-        cycle.residual.iter().copied().for_each(&mut put);
-        cycle.tau_ext.iter().copied().for_each(&mut put);
-        cycle.q.iter().map(|q| q.to_degrees()).for_each(&mut put);
-        for row in 0..DOF {
-            let known = cycle.conditioning.get(row).filter(|_| row < self.rows);
-            put(known.copied().unwrap_or(f64::NAN));
+        for channel in series(CHANNELS) {
+            (channel.values)(sample, &mut |value| put(channel.columns, value));
         }
-        put(cycle.hand_force_n.unwrap_or(f64::NAN));
-        for index in 0..self.levels {
-            let level = cycle.levels.get(index).copied().unwrap_or_default();
-            put(level.error * 1e3);
-            put(level.leak);
-            level.desired.into_iter().for_each(&mut put);
-            level.actual.into_iter().for_each(&mut put);
+        for level in &sample.levels {
+            for channel in series(LEVEL_CHANNELS) {
+                (channel.values)(level, &mut |value| put(channel.columns, value));
+            }
         }
         if self.block_t.len() == self.block_len {
             self.close_block();
         }
-    }
-
-    /// Adds a cycle of an experiment.
-    pub fn record(&mut self, scenario: &Scenario, instant: &Instant<'_>) {
-        let level = |level: &LevelInstant| LevelCycle {
-            error: level.error,
-            leak: level.leak,
-            desired: level.desired_point,
-            actual: level.actual_point,
-        };
-        let hands = !scenario.hands.is_empty();
-        self.push(&Cycle {
-            t_s: instant.t_s,
-            q: &instant.state.q,
-            residual: instant.residual,
-            tau_ext: instant.tau_ext,
-            conditioning: instant.conditioning,
-            levels: &instant.levels.iter().map(level).collect::<Vec<_>>(),
-            hand_force_n: hands.then_some(instant.hand_force_n),
-        });
-        if self.snapshot_due(instant.t_s) {
-            self.arms.push(ArmSnapshot::new(
-                instant.t_s,
-                instant.plant,
-                instant.state,
-                scenario,
-            ));
+        if self.snapshot_due(sample.t_s) {
+            let snapshot = ArmSnapshot::new(sample.t_s, &self.arm, &sample.state, scenario);
+            self.arms.push(snapshot);
         }
     }
 
@@ -241,59 +212,64 @@ impl Recording {
     /// r of a joint \[Nm\].
     #[must_use]
     pub fn residual(&self, joint: usize) -> &[f64] {
-        &self.columns[RESIDUAL + joint]
+        self.column("r{joint}", joint)
     }
 
     /// True tau_ext of a joint \[Nm\].
     #[must_use]
     pub fn tau_ext(&self, joint: usize) -> &[f64] {
-        &self.columns[TAU_EXT + joint]
+        self.column("tau_ext{joint}", joint)
     }
 
     /// Position of a joint \[deg\].
     #[must_use]
     pub fn q_deg(&self, joint: usize) -> &[f64] {
-        &self.columns[Q + joint]
+        self.column("q{joint}", joint)
     }
 
     /// |R_kk| of a task row \[1/sqrt(kg)\].
     #[must_use]
     pub fn conditioning(&self, row: usize) -> &[f64] {
-        &self.columns[CONDITIONING + row]
+        self.column("conditioning{row}", row)
     }
 
     /// Hand force \[N\]; NaN where there is no hand.
     #[must_use]
     pub fn hand_force_n(&self) -> &[f64] {
-        &self.columns[HAND]
+        self.column("hand_force", 0)
     }
 
     /// Norm of a level's task error \[mm\].
     #[must_use]
     pub fn error_milli(&self, level: usize) -> &[f64] {
-        self.level(level, 0)
+        self.level(level, "e{level}", 0)
     }
 
     /// Task acceleration of a level that lower levels cause \[m/s2\].
     #[must_use]
     pub fn leak(&self, level: usize) -> &[f64] {
-        self.level(level, 1)
+        self.level(level, "leak{level}", 0)
     }
 
     /// Desired coordinate `axis` of a level's point \[m\].
     #[must_use]
     pub fn desired(&self, level: usize, axis: usize) -> &[f64] {
-        self.level(level, 2 + axis)
+        self.level(level, "point{level}_des_{axis}", axis)
     }
 
     /// True coordinate `axis` of a level's point \[m\].
     #[must_use]
     pub fn actual(&self, level: usize, axis: usize) -> &[f64] {
-        self.level(level, 5 + axis)
+        self.level(level, "point{level}_{axis}", axis)
     }
 
-    fn level(&self, level: usize, part: usize) -> &[f64] {
-        &self.columns[LEVELS + PER_LEVEL * level + part]
+    fn column(&self, columns: &str, index: usize) -> &[f64] {
+        &self.columns[place(CHANNELS, columns) + index]
+    }
+
+    fn level(&self, level: usize, columns: &str, index: usize) -> &[f64] {
+        let start = width(CHANNELS) + level * width(LEVEL_CHANNELS);
+        &self.columns[start + place(LEVEL_CHANNELS, columns) + index]
     }
 }
 
@@ -309,7 +285,7 @@ fn block_len(cycles: usize) -> usize {
 /// Start, and before each contact's force ramps down; evenly spread without.
 fn snapshot_times(scenario: &Scenario, contacts: bool) -> Vec<f64> {
     let mut times = vec![0.0];
-    let intervals = scenario.contacts().intervals();
+    let intervals = scenario.intervals();
     if contacts && !intervals.is_empty() {
         times.extend(intervals.iter().map(|c| c.to_s - c.ramp_s));
     } else {
@@ -343,29 +319,38 @@ fn extremes(values: &[f64]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use controller_core::joint::JointVector;
+    use record::run::LevelSample;
+
+    fn sample(t_s: f64, level: LevelSample) -> Sample {
+        let zero = JointVector::zeros();
+        Sample {
+            t_s,
+            state: JointState { q: zero, dq: zero },
+            torque: zero,
+            residual: zero,
+            saturated: false,
+            rank: false,
+            tau_ext: zero,
+            hand_force_n: 0.0,
+            conditioning: vec![1.0; 3],
+            levels: vec![level],
+        }
+    }
 
     #[test]
     fn a_long_run_is_bounded_and_keeps_its_peak() {
         let mut scenario = Scenario::find("two-level").unwrap();
         scenario.duration_s = 400.0;
         let mut recording = Recording::new(&scenario, true);
-        let zero = JointVector::zeros();
         for k in 0..scenario.cycles() {
             let peak = if k == 123_457 { 0.25 } else { 1e-4 };
-            let level = LevelCycle {
+            let level = LevelSample {
                 error: peak,
                 leak: f64::NAN,
-                ..LevelCycle::default()
+                ..LevelSample::default()
             };
-            recording.push(&Cycle {
-                t_s: k as f64 * scenario.cycle_s(),
-                q: &zero,
-                residual: &zero,
-                tau_ext: &zero,
-                conditioning: &[1.0; DOF],
-                levels: &[level],
-                hand_force_n: None,
-            });
+            recording.push(&scenario, &sample(k as f64 * scenario.cycle_s(), level));
         }
         recording.finish();
         let error = recording.error_milli(0);

@@ -2,9 +2,9 @@
 
 mod view;
 
-use super::Run;
 use super::plot::{Band, Stroke, Style};
 use super::recording::{ArmSnapshot, Recording};
+use super::run::Run;
 use super::svg::{Anchor, Svg, text_width};
 
 use view::{LEFT, View};

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use super::svg::escape;
 use super::ticks::{figure, plain};
 use super::{Run, letter};
-use crate::metrics::{LevelFigures, Metric};
-use crate::names::Named;
+use crate::metrics::LevelFigures;
 use crate::robot::LinkFigures;
-use crate::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+use cell::names::Named;
+use cell::scenario::{AxisGain, LevelSpec, Metric, PostureSpec, ReferenceSpec, TaskSpec};
 
 /// A table under construction: rows of cells that are HTML already.
 pub(crate) struct Table {
@@ -66,9 +66,16 @@ pub fn acceptance(run: &Run<'_>) -> String {
                 and dead cycles: nothing was judged.</p>\n"
             .to_string();
     }
+    let turns = |level: &LevelSpec| level.task == TaskSpec::Orientation;
+    let unit = if run.scenario.levels.iter().any(turns) {
+        "mm, mrad"
+    } else {
+        "mm"
+    };
+    let [limit, value] = ["Limit", "Value"].map(|name| format!("#{name} [{unit}]"));
     let mut table = Table::new(
         "Every metric must be below its limit.",
-        &columns(&["Metric", "#Limit [mm]", "#Value [mm]", "#Used", "Result"]),
+        &columns(&["Metric", &limit, &value, "#Used", "Result"]),
     );
     for one in all {
         let used = one

@@ -1,10 +1,12 @@
 //! Counters of the link, cycle by cycle and answer by answer.
 
+use fri::{InterfaceState, Quality};
+
 use super::figures::{
     EVENTS_MAX, Event, LatencyFigures, LinkFigures, QualityCycles, Rejected, StateCycles,
 };
-use super::krc::{Krc, State};
-use super::rating::{Quality, Rating};
+use super::krc::Krc;
+use super::rating::Rating;
 
 /// What was counted.
 #[derive(Clone, Debug, Default)]
@@ -45,17 +47,17 @@ impl Counters {
     }
 
     /// A cycle that began in `state`.
-    pub fn cycle(&mut self, state: State, quality: Quality, scenario: bool) {
-        let command = u64::from(state == State::Command);
+    pub fn cycle(&mut self, state: InterfaceState, quality: Quality, scenario: bool) {
+        let command = u64::from(state == InterfaceState::Command);
         self.states.command += command;
         self.states.monitor += 1 - command;
         self.scenario += u64::from(scenario);
         self.commanded += u64::from(scenario) * command;
         match quality {
-            Quality::Unacceptable => self.qualities.unacceptable += 1,
             Quality::Bad => self.qualities.bad += 1,
             Quality::Ok => self.qualities.ok += 1,
             Quality::Perfect => self.qualities.perfect += 1,
+            _ => self.qualities.unacceptable += 1,
         }
     }
 

@@ -3,7 +3,7 @@
 
 use controller_core::joint::JointVector;
 
-use crate::plant::Impedance;
+use crate::plant::{DeadTime, Impedance};
 
 /// One way of driving: a torque, and springs and dampers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,6 +127,30 @@ impl Passage {
                 rate: mean(&from.rate, &to.rate),
             },
         }
+    }
+}
+
+/// The way of added torque to the motors: so many cycles long.
+pub struct Pipe {
+    cycles: usize,
+    way: DeadTime,
+}
+
+impl Pipe {
+    /// Nothing is under way.
+    pub fn new(cycles: usize) -> Self {
+        let way = DeadTime::new(cycles, JointVector::zeros());
+        Self { cycles, way }
+    }
+
+    /// One cycle: takes what is ordered \[Nm\], gives what arrives.
+    pub fn pass(&mut self, ordered: &JointVector<f64>) -> JointVector<f64> {
+        self.way.pass(ordered)
+    }
+
+    /// Forgets what is under way.
+    pub fn void(&mut self) {
+        *self = Self::new(self.cycles);
     }
 }
 

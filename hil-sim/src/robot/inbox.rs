@@ -3,7 +3,6 @@
 use fri::sequence::{Arrival, Receiver, Sender};
 use fri::{Error, Header};
 
-use super::Answer;
 use super::counters::Counters;
 use super::figures::Rejected;
 use super::krc::Refusal;
@@ -11,6 +10,19 @@ use super::order::Order;
 
 /// Measurements whose answers are still known.
 const REMEMBERED: usize = 1024;
+
+/// What became of an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// The newest: it acts.
+    Accepted,
+    /// Seen before, or to a cycle that has its answer: no effect.
+    Repeated,
+    /// Older than one already accepted: no effect.
+    Old,
+    /// Not usable: no effect.
+    Rejected,
+}
 
 /// Counters of both sides.
 #[derive(Clone, Debug)]

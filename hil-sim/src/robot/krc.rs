@@ -2,21 +2,13 @@
 //! act, and what the motors get. No clock, no datagrams, no plant.
 
 use controller_core::joint::{DOF, JointMatrix, JointVector};
+use fri::{InterfaceState, Quality};
 
-use super::driving::{Driving, Passage};
+use super::driving::{Driving, Passage, Pipe};
 use super::options::{Krl, RobotOptions, Scheme, cycles};
 use super::order::Order;
-use super::rating::{Quality, Rating};
+use super::rating::Rating;
 use crate::plant::Impedance;
-
-/// State of the link. There is no state "off": a robot that is off sends nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Answers are rated and move nothing.
-    Monitor,
-    /// Answers move the robot.
-    Command,
-}
 
 /// Why the content of an answer is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +39,8 @@ pub struct Krc {
     cycle_s: f64,
     /// Largest motion of jntPos in a cycle \[rad\].
     reach: JointVector<f64>,
-    state: State,
+    /// In command state; else in monitor state.
+    commands: bool,
     scheme: Scheme,
     /// Position commanded before FRI \[rad\].
     hold: JointVector<f64>,
@@ -96,7 +89,7 @@ impl Krc {
             options,
             cycle_s,
             reach: speed_limit * (options.speed_factor * cycle_s),
-            state: State::Monitor,
+            commands: false,
             scheme: options.scheme,
             hold: *q0,
             commanded: *q0,
@@ -124,8 +117,12 @@ impl Krc {
 
     /// State that the coming measurement reports.
     #[must_use]
-    pub fn state(&self) -> State {
-        self.state
+    pub fn state(&self) -> InterfaceState {
+        if self.commands {
+            InterfaceState::Command
+        } else {
+            InterfaceState::Monitor
+        }
     }
 
     /// Control scheme.
@@ -137,10 +134,8 @@ impl Krc {
     /// Position commanded before FRI \[rad\], and what FRI adds to it.
     #[must_use]
     pub fn positions(&self) -> (JointVector<f64>, JointVector<f64>) {
-        match self.state {
-            State::Monitor => (self.hold, JointVector::zeros()),
-            State::Command => (self.hold, self.commanded - self.hold),
-        }
+        // Equal in monitor state: the difference is zero.
+        (self.hold, self.commanded - self.hold)
     }
 
     /// int\[1\] of the KRL program: 10 after its start, 1 in command state, 0 after it.
@@ -165,7 +160,7 @@ impl Krc {
     /// is not of this cycle.
     #[must_use]
     pub fn is_bridging(&self) -> bool {
-        self.passage.is_running() || (self.state == State::Command && self.age > 0)
+        self.passage.is_running() || (self.commands && self.age > 0)
     }
 
     /// Change of torque in the last cycle that the client ordered \[Nm\].
@@ -190,9 +185,10 @@ impl Krc {
     /// # Errors
     /// It is not used; in command state changed flags end that state.
     pub fn accept(&mut self, order: &Order, q: &JointVector<f64>) -> Result<(), Refusal> {
-        let checked = match self.state {
-            State::Monitor => Ok(()),
-            State::Command => self.check(order, q),
+        let checked = if self.commands {
+            self.check(order, q)
+        } else {
+            Ok(())
         };
         self.refused = checked.err();
         if checked.is_ok() {
@@ -247,15 +243,14 @@ impl Krc {
     }
 
     fn take(&mut self, order: &Order) {
-        if self.state == State::Command
+        if self.commands
             && let Some(position) = order.position
         {
             let before = JointVector::from_fn(|i, _| self.last_position(i));
             self.rate = (position - before) / f64::from(self.age + 1);
             self.commanded = position;
         }
-        if self.state == State::Monitor && self.order.is_some_and(|last| last.flags != order.flags)
-        {
+        if !self.commands && self.order.is_some_and(|last| last.flags != order.flags) {
             // Flags have to be chosen before command state: wait anew.
             if self.good > 0 {
                 self.tell_once("cmdFlags changed while waiting; choose them before command state");
@@ -269,14 +264,14 @@ impl Krc {
     /// Ends a cycle: what the motors get in it besides the robot's own dynamics.
     /// `added` delays the added torque of orders by the dead time; it is told
     /// when what is under way is void.
-    pub fn cycle(&mut self, now: &Now<'_>, added: &mut impl Added) -> Driving {
+    pub fn cycle(&mut self, now: &Now<'_>, added: &mut Pipe) -> Driving {
         self.age = if self.fresh {
             0
         } else {
             self.age.saturating_add(1)
         };
         self.fresh = false;
-        if self.state == State::Command {
+        if self.commands {
             self.bridge();
             if let Some((reason, fault)) = self.must_stop(now) {
                 self.stop(now, &reason, fault);
@@ -284,23 +279,22 @@ impl Krc {
             }
         }
         let resting = self.passage.next();
-        if self.state == State::Monitor {
+        if !self.commands {
             self.hold += resting * self.cycle_s;
             self.commanded = self.hold;
         }
-        let wanted = match self.state {
-            State::Monitor => Driving::by_springs(self.springs(
+        let wanted = if self.commands {
+            self.ordered(now, added)
+        } else {
+            Driving::by_springs(self.springs(
                 now,
                 &JointVector::repeat(self.options.stiffness),
                 &JointVector::repeat(self.options.damping),
-            )),
-            State::Command => self.ordered(now, added),
+            ))
         };
         // In monitor state nothing arrives: what fades then is the link's doing.
-        let ordered = self.state == State::Command;
-        let change = wanted.torque - self.arrived;
-        self.change = if ordered {
-            change
+        self.change = if self.commands {
+            wanted.torque - self.arrived
         } else {
             JointVector::zeros()
         };
@@ -366,7 +360,7 @@ impl Krc {
     }
 
     fn leave_command(&mut self) {
-        self.state = State::Monitor;
+        self.commands = false;
         self.commanded = self.hold;
         self.rate = JointVector::zeros();
         self.good = 0;
@@ -377,13 +371,13 @@ impl Krc {
     /// Leaves command state for good; the last cycle's torque stays the last.
     pub fn leave(&mut self) {
         self.left = true;
-        if self.state == State::Command {
+        if self.commands {
             self.leave_command();
         }
     }
 
     /// What the order that acts asks for.
-    fn ordered(&self, now: &Now<'_>, added: &mut impl Added) -> Driving {
+    fn ordered(&self, now: &Now<'_>, added: &mut Pipe) -> Driving {
         let none = JointVector::zeros();
         let Some(order) = &self.order else {
             return Driving::by_springs(Impedance::none());
@@ -436,15 +430,15 @@ impl Krc {
 
     /// In monitor state: whether command state begins with the next measurement.
     fn consider(&mut self, now: &Now<'_>) {
-        if self.state == State::Command || self.left {
+        if self.commands || self.left {
             return;
         }
         let Some(order) = self.order else { return };
         let wish = self.options.krl == Krl::Auto || order.wants_command;
-        let good = now.rating.quality() >= Quality::Ok && self.age == 0 && wish;
-        if !good {
+        let link = matches!(now.rating.quality(), Quality::Ok | Quality::Perfect);
+        if !link || self.age > 0 || !wish {
             // One missing answer does not begin the wait anew; a bad link does.
-            if now.rating.quality() < Quality::Ok || !wish {
+            if !link || !wish {
                 self.good = 0;
             }
             return;
@@ -460,7 +454,7 @@ impl Krc {
             }
             Ok(scheme) => {
                 self.scheme = scheme;
-                self.state = State::Command;
+                self.commands = true;
                 self.answer_int = 1;
                 self.flags = order.flags;
                 self.rate = JointVector::zeros();
@@ -528,12 +522,4 @@ impl Krc {
     fn say(&mut self, text: String) {
         self.messages.push(text);
     }
-}
-
-/// The way of the added torque to the motors.
-pub trait Added {
-    /// One cycle: takes what is ordered \[Nm\], gives what arrives.
-    fn pass(&mut self, ordered: &JointVector<f64>) -> JointVector<f64>;
-    /// Forgets what is under way.
-    fn void(&mut self);
 }

@@ -5,7 +5,7 @@ use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, Vector3};
 use nalgebra::{SMatrix, SVector};
 
-use crate::experiment::angular_velocity;
+use crate::arm_points::angular_velocity;
 use crate::plant::PlantModel;
 
 /// Rows X Y Z of the flange's velocity, then its turning about Z, Y, X.

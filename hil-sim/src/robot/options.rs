@@ -1,7 +1,8 @@
 //! How the robot controller behaves where the protocol leaves it open. Every
 //! number here is an assumption of this simulation, not a fact about a product.
 
-use crate::names::Named;
+use cell::names::Named;
+use fri::ControlScheme;
 
 /// Who decides that the answers move the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,7 +21,7 @@ impl Named for Krl {
         &[("auto", Self::Auto), ("handshake", Self::Handshake)];
 }
 
-/// What an answer commands.
+/// What an answer commands: of the control schemes those that this robot has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
     /// tau = k (q_cmd - q) - D dq + added torque + the robot's own dynamics.
@@ -38,16 +39,16 @@ impl Named for Scheme {
     ];
 }
 
-impl Scheme {
-    /// Number in the `control` field of a measurement datagram.
-    #[must_use]
-    pub fn number(self) -> u16 {
-        match self {
-            Self::Position => 1,
-            Self::JointImpedance => 3,
+impl From<Scheme> for ControlScheme {
+    fn from(scheme: Scheme) -> Self {
+        match scheme {
+            Scheme::JointImpedance => Self::JointImpedance,
+            Scheme::Position => Self::Position,
         }
     }
+}
 
+impl Scheme {
     /// The scheme of a strategy number as user data carry it.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //! is filled with.
 
 use controller_core::joint::{DOF, JointVector};
-use fri::{Command, CommandPacket, Error, Flags};
+use fri::{Command, CommandPacket, Error, Flags, UserData};
 
 /// Largest stiffness that counts \[Nm/rad\].
 pub const STIFFNESS_MAX: f64 = 2000.0;
@@ -33,52 +33,53 @@ pub struct Order {
     pub residual: JointVector<f64>,
 }
 
-/// Fields of a command whose flag says whether they count: flag, offset, reals.
-const FLAGGED: [(u32, usize, usize); 8] = [
-    (0x0001, 144, 7),
-    (0x0100, 172, 12),
-    (0x0004, 220, 7),
-    (0x0400, 248, 6),
-    (0x0010, 272, 7),
-    (0x0020, 300, 7),
-    (0x1000, 328, 6),
-    (0x2000, 352, 6),
-];
-
 /// Reads an answer.
 ///
 /// # Errors
 /// It is no command datagram, or a real that counts is not finite.
 pub fn read(datagram: &[u8]) -> Result<Order, Error> {
+    let bytes = datagram.try_into().map_err(|_| Error::Length {
+        found: datagram.len(),
+        expected: Command::LEN,
+    })?;
     // What a client leaves in fields that it does not use is its own affair.
-    let mut bytes: [u8; Command::LEN] = match datagram.try_into() {
-        Ok(bytes) => bytes,
-        Err(_) => return CommandPacket::new_checked(datagram).map(|packet| order(&packet)),
-    };
-    let flags = u32::from_le_bytes([bytes[140], bytes[141], bytes[142], bytes[143]]);
-    for (flag, at, reals) in FLAGGED {
-        if flags & flag == 0 {
-            bytes[at..at + 4 * reals].fill(0);
-        }
-    }
-    // User data are free; those that are no numbers read as zero.
-    for at in (8..72).step_by(4) {
-        let real = f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-        if !real.is_finite() {
-            bytes[at..at + 4].fill(0);
-        }
-    }
-    CommandPacket::new_checked(&bytes[..]).map(|packet| order(&packet))
+    let flags = CommandPacket::new_checked(used(bytes, Flags::default()))?.flags();
+    let packet = CommandPacket::new_checked(used(bytes, flags))?;
+    Ok(order(&Command::parse(&packet), &UserData::read(bytes)))
 }
 
-fn order<T: AsRef<[u8]>>(packet: &CommandPacket<T>) -> Order {
-    let command = Command::parse(packet);
+/// The datagram with zeros for user reals, and for the fields that `flags` do not set.
+fn used(bytes: &[u8; Command::LEN], flags: Flags) -> [u8; Command::LEN] {
+    // No byte of it is zero, as those of the empty datagram are there.
+    const MARK: f32 = f32::from_bits(0x3F3F_3F3F);
+    let mark = |flag| if flags.contains(flag) { 0.0 } else { MARK };
+    let marked = Command {
+        user: UserData {
+            real: [MARK; 16],
+            ..UserData::default()
+        },
+        joint_position: [mark(Flags::JOINT_POSITION); DOF],
+        frame: [mark(Flags::FRAME); 12],
+        joint_torque: [mark(Flags::JOINT_TORQUE); DOF],
+        wrench: [mark(Flags::WRENCH); 6],
+        joint_stiffness: [mark(Flags::JOINT_STIFFNESS); DOF],
+        joint_damping: [mark(Flags::JOINT_DAMPING); DOF],
+        cartesian_stiffness: [mark(Flags::CARTESIAN_STIFFNESS); 6],
+        cartesian_damping: [mark(Flags::CARTESIAN_DAMPING); 6],
+        ..Command::default()
+    };
+    let (mut here, mut empty) = ([0; Command::LEN], [0; Command::LEN]);
+    marked.emit(&mut here);
+    Command::default().emit(&mut empty);
+    std::array::from_fn(|i| if here[i] == empty[i] { bytes[i] } else { 0 })
+}
+
+fn order(command: &Command, user: &UserData) -> Order {
     let vector = |values: &[f32; DOF]| JointVector::from(values.map(f64::from));
     let given = |flag, values: &[f32; DOF]| command.flags.contains(flag).then(|| vector(values));
     let within = |values: Option<JointVector<f64>>, max: f64| {
         values.map(|values| values.map(|value| value.clamp(0.0, max)))
     };
-    let user = &command.user;
     Order {
         counter: command.header.counter,
         reflected: command.header.reflected,
@@ -92,7 +93,11 @@ fn order<T: AsRef<[u8]>>(packet: &CommandPacket<T>) -> Order {
         damping: within(given(Flags::JOINT_DAMPING, &command.joint_damping), 1.0),
         strategy: user.int[0],
         wants_command: user.int[1] == 1,
-        residual: JointVector::from_fn(|i, _| f64::from(user.real[i])),
+        // User data are free; those that are no numbers read as zero.
+        residual: JointVector::from_fn(|i, _| match user.real[i] {
+            real if real.is_finite() => real.into(),
+            _ => 0.0,
+        }),
     }
 }
 

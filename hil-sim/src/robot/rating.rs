@@ -1,46 +1,12 @@
 //! How good the link is: statistics of the answers to the last cycles, and the
 //! level that they add up to.
 
+use fri::Quality;
+
 use super::options::RatingOptions;
 
 /// Cycles that count.
 pub const WINDOW: usize = 100;
-
-/// What a robot says about its link; ordered, the worst first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Quality {
-    /// Commanding is forbidden.
-    #[default]
-    Unacceptable,
-    /// Commanding goes on.
-    Bad,
-    /// Commanding may begin.
-    Ok,
-    /// As it should be.
-    Perfect,
-}
-
-impl Quality {
-    /// Every level, the worst first.
-    pub const ALL: [Self; 4] = [Self::Unacceptable, Self::Bad, Self::Ok, Self::Perfect];
-
-    /// In lower case.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Unacceptable => "unacceptable",
-            Self::Bad => "bad",
-            Self::Ok => "ok",
-            Self::Perfect => "perfect",
-        }
-    }
-
-    /// Number on the wire.
-    #[must_use]
-    pub fn number(self) -> u16 {
-        self as u16
-    }
-}
 
 /// Statistics of the window, as a measurement datagram carries them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

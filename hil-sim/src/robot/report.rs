@@ -1,18 +1,13 @@
-//! What the robot says: its measurement datagram, and the summary of a run.
+//! What the robot says: its measurement datagram.
 
 use controller_core::joint::{DOF, JointMatrix};
 use fri::measurement::{Drives, Statistics};
-use fri::{ControlScheme, Frame, Header, InterfaceState, Measurement, UserData};
+use fri::{Frame, Header, Measurement, UserData};
 use nalgebra::Matrix3;
 
-use super::krc::State;
+use super::arm::{Robot, Seen};
 use super::model::{self, Jacobian, RobotModel};
-use super::options::Scheme;
 use super::order::wire;
-use super::rating::Quality;
-use super::{FaultCounts, Named, Robot, Seen, Summary, Verdict, summary};
-use crate::names::MeasurementKind;
-use crate::summary::Conditions;
 
 /// Power bits with the drives on: one per joint.
 const POWER: u16 = 0x7F;
@@ -33,16 +28,8 @@ impl Robot {
             header,
             user,
             timestamp_s: self.robot_time_s() as f32,
-            state: match self.krc.state() {
-                State::Monitor => InterfaceState::Monitor,
-                State::Command => InterfaceState::Command,
-            },
-            quality: match self.rating.quality() {
-                Quality::Unacceptable => fri::Quality::Unacceptable,
-                Quality::Bad => fri::Quality::Bad,
-                Quality::Ok => fri::Quality::Ok,
-                Quality::Perfect => fri::Quality::Perfect,
-            },
+            state: self.krc.state(),
+            quality: self.rating.quality(),
             period_s: self.cycle_s as f32,
             command_period_s: self.cycle_s as f32,
             safety_limits: 1.0,
@@ -55,10 +42,7 @@ impl Robot {
             },
             drives: Drives {
                 power: if self.drives_on() { POWER } else { 0 },
-                control: match self.krc.scheme() {
-                    Scheme::Position => ControlScheme::Position,
-                    Scheme::JointImpedance => ControlScheme::JointImpedance,
-                },
+                control: self.krc.scheme().into(),
                 error: 0,
                 warning: 0,
                 temperature: [0.0; DOF],
@@ -76,53 +60,6 @@ impl Robot {
             jacobian: rows_of_jacobian(&jacobian),
             mass_matrix: rows_of_matrix(&seen.mass_matrix),
             gravity: wire(&seen.gravity),
-        }
-    }
-
-    /// Figures, verdict and link of the run so far.
-    #[must_use]
-    pub fn summary(&self) -> Summary {
-        let setup = &self.setup;
-        let scenario = &setup.scenario;
-        let levels = self.metrics.levels(&scenario.levels);
-        let conditions = Conditions {
-            plant: setup.plant,
-            contacts: setup.contacts,
-            measurement: MeasurementKind::Fri,
-            dead_cycles: setup.plant_options.dead_cycles,
-        };
-        let acceptance = summary::judge(scenario, &conditions, &levels);
-        let (verdict, reason) = match &self.stop {
-            Some(reason) => (Verdict::Stopped, Some(reason.clone())),
-            None => match summary::verdict(&acceptance) {
-                (_, reason) if self.ended_in_monitor => {
-                    let lost = "not in command state at the end".to_string();
-                    let all = reason.map_or(lost.clone(), |reason| format!("{reason}; {lost}"));
-                    (Verdict::Fail, Some(all))
-                }
-                judged => judged,
-            },
-        };
-        Summary {
-            scenario: scenario.name.clone(),
-            controller: summary::CLIENT,
-            plant: setup.plant.name(),
-            contacts: setup.contacts,
-            seed: setup.seed,
-            cycle_ms: scenario.cycle_ms,
-            duration_s: scenario.duration_s,
-            cycles: self.metrics.cycles(),
-            verdict,
-            reason,
-            acceptance,
-            levels,
-            residual: self.metrics.residual(),
-            torque: self.metrics.torque(),
-            joints: self.metrics.joints(),
-            hand_force_max_n: self.contacts.has_hands().then(|| self.metrics.hand_force()),
-            limits: self.metrics.limits(),
-            faults: FaultCounts::default(),
-            link: Some(self.counters.figures(&self.krc, &self.rating)),
         }
     }
 }

@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
-use crate::invalid::{Invalid, positive};
 use crate::robot::Robot;
-use crate::scenario::PointSpec;
-use crate::terminal::tell;
+use crate::sample::Stop;
+use cell::invalid::{Invalid, positive};
+use cell::scenario::PointSpec;
+use cell::terminal::tell;
 
 /// One line for a line that means nothing.
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \
@@ -106,7 +107,7 @@ impl Operator {
     /// Does what was asked for since the last call.
     pub fn attend(&mut self, robot: &mut Robot) {
         if self.interrupted.load(Ordering::Relaxed) {
-            robot.abort("interrupted");
+            robot.abort(Stop::Interrupted);
         }
         let Some(lines) = &self.lines else { return };
         while let Ok(line) = lines.try_recv() {
@@ -115,7 +116,7 @@ impl Operator {
                 Ok(Some(Wish::Push(point, force, seconds))) => robot.push(point, force, seconds),
                 Ok(Some(Wish::Release)) => robot.release(),
                 Ok(Some(Wish::Drives(on))) => robot.switch_drives(on),
-                Ok(Some(Wish::Quit)) => robot.abort("quit"),
+                Ok(Some(Wish::Quit)) => robot.abort(Stop::Quit),
                 Err(error) => tell(error),
             }
         }

@@ -6,11 +6,12 @@
 use std::io;
 use std::time::{Duration, Instant as Clock};
 
+use super::console::Operator;
+use super::service::{End, Service};
 use super::transport::{RESEND, Transport};
-use super::{End, Operator, Service};
-use crate::experiment::Instant;
 use crate::link::{Channel, Direction};
 use crate::robot::{MEASUREMENT_BYTES, Robot};
+use record::run::Sample;
 
 /// Runs the service in real time.
 pub(super) fn run(
@@ -18,7 +19,7 @@ pub(super) fn run(
     robot: &mut Robot,
     operator: &mut Operator,
     client: &mut impl Transport,
-    mut sink: impl FnMut(&Instant<'_>) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
     let mut measurement = [0; MEASUREMENT_BYTES];

@@ -8,7 +8,7 @@ use bridge::framing::{self, DATAGRAM_MAX, Deframer, Fed};
 use serial2::SerialPort;
 
 use super::transport::{POLL, Transport};
-use crate::invalid::Invalid;
+use cell::invalid::Invalid;
 
 /// Bits per second; a pseudo terminal does not care.
 pub const BAUD: u32 = 4_000_000;

@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::transport::{NOTHING, POLL, Transport};
-use crate::invalid::Invalid;
+use cell::invalid::Invalid;
 
 /// More than any datagram of the protocol.
 const BUFFER: usize = 2048;

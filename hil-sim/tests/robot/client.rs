@@ -1,11 +1,12 @@
 //! A client as a stranger would write it: flags 0x35, positions mirrored, counter
 //! starting anywhere, every measurement answered once.
 
+use cell::names::PlantKind;
+use cell::scenario::Scenario;
 use controller_core::joint::JointVector;
 use fri::{Command, Flags, InterfaceState, Measurement, MeasurementPacket};
-use hil_sim::plant::{PlantKind, PlantOptions};
+use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{Answer, MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
-use hil_sim::scenario::Scenario;
 
 pub fn setup(plant: PlantKind, options: RobotOptions) -> RobotSetup {
     RobotSetup {

@@ -1,15 +1,16 @@
 //! The product's law on the other side of the datagrams: signs, times and origins
 //! of both sides fit together.
 
+use cell::names::PlantKind::{self, Ideal, Realistic};
+use cell::scenario::Scenario;
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::JointVector;
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Controller, Measurement, State};
 use fri::InterfaceState;
+use hil_sim::arm_points::origins;
 use hil_sim::link::{Expect, LockStep, Peer};
-use hil_sim::plant::PlantKind::{self, Ideal, Realistic};
 use hil_sim::robot::{Robot, RobotOptions};
-use hil_sim::scenario::Scenario;
 use hil_sim::summary::Summary;
 
 use crate::client::{Client, setup};
@@ -43,7 +44,7 @@ impl Bridge {
     fn torque(&mut self, q: JointVector<f64>) -> (JointVector<f64>, JointVector<f64>) {
         let state = self.velocity.update(&q, 0.002);
         let posture = *self.start.get_or_insert(q);
-        let origins = self.scenario.origins_at(&posture);
+        let origins = origins(&self.scenario, &posture);
         let t = f64::from(self.cycle.max(0)) * 0.002;
         let reference = self.scenario.reference(&origins, &posture, t);
         let measurement = Measurement {

@@ -1,7 +1,7 @@
 //! What the arm does: no torque step that the link causes, and the schemes.
 
+use cell::names::PlantKind::{self, Ideal, Realistic};
 use controller_core::joint::JointVector;
-use hil_sim::plant::PlantKind::{self, Ideal, Realistic};
 use hil_sim::robot::{Robot, RobotAdds, RobotOptions, Scheme, State};
 
 use crate::client::{Loop, robot, setup};

@@ -1,6 +1,6 @@
 //! The way into command state, and what bars it.
 
-use hil_sim::plant::PlantKind::{Ideal, Realistic};
+use cell::names::PlantKind::{Ideal, Realistic};
 use hil_sim::robot::{Answer, Krl, Robot, RobotOptions, State};
 
 use crate::client::{Client, Loop, measurement, robot, send, setup};

@@ -1,7 +1,7 @@
 //! In command state: what ends it, what is bridged, and the way back.
 
+use cell::names::PlantKind::{Ideal, Realistic};
 use fri::InterfaceState;
-use hil_sim::plant::PlantKind::{Ideal, Realistic};
 use hil_sim::robot::State;
 
 use crate::client::{Loop, robot};
@@ -139,7 +139,7 @@ fn the_measurement_is_consistent() {
 fn external_torque_is_positive_along_q() {
     let mut link = Loop::new(robot(Ideal));
     link.enter();
-    let point = hil_sim::scenario::PointSpec::Name("flange".into());
+    let point = cell::scenario::PointSpec::Name("flange".into());
     link.robot.push(point, [0.0, 0.0, 5.0], 1.0);
     link.polite(100);
     link.run(1, |msr, _| {

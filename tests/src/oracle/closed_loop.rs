@@ -1,5 +1,6 @@
 //! A controller of either precision around the ideal plant.
 
+use cell::names::PlantKind;
 use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
@@ -9,7 +10,7 @@ use controller_core::task::trajectory::{Plane, Trajectory};
 use controller_core::{
     Controller, ControllerConfig, LinkPoint, Measurement, Reference, State, Step, Target, Task,
 };
-use hil_sim::plant::{Plant, PlantKind, PlantModel};
+use hil_sim::plant::{Plant, PlantModel};
 
 /// The posture \[deg\] from which the two-level circle starts.
 pub const TWO_LEVEL_START: [f64; 7] = [0.0, 35.0, 0.0, -80.0, 20.0, 60.0, 0.0];

@@ -1,14 +1,15 @@
 //! A level that holds: where it was in the first cycle of holding, whatever pushes it.
 
+use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use controller_core::task::orientation::{Quaternion, about_axis, product};
 use controller_core::task::trajectory::Rotation;
-use controller_core::{Axes, ControllerConfig, Link, Reference, Target, Task};
+use controller_core::{Axes, Controller, ControllerConfig, Link, Reference, State, Target, Task};
 use hil_sim::plant::{Plant, PlantModel};
 use stratum_tests::config::{FLANGE, REFERENCE_GAINS, with_tasks};
 use stratum_tests::oracle::closed_loop::{ClosedLoop, Seen, circle, no_contact, true_point};
 
-use super::start;
+use super::{at, start};
 
 /// Position and orientation of the flange.
 fn both() -> ControllerConfig {
@@ -197,4 +198,23 @@ fn a_reset_takes_the_place_anew_and_a_gap_does_not() {
         // Three seconds at 20 /s; rounding is left.
         assert!(away[0] < 1e-9 && away[1] < 1e-9, "{reset}: {away:?}");
     }
+}
+
+/// A place held under another controller, where the level was of another kind, is not
+/// taken for one of this kind: the level holds where it is.
+#[test]
+fn a_place_of_another_kind_is_taken_anew() {
+    let position = Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS);
+    let orientation = Task::orientation(Link::L7, Axes::XYZ, REFERENCE_GAINS);
+    let [first, second] = [position, orientation].map(|task| {
+        let config = with_tasks(&[task]);
+        Controller::<f64>::new(&LWR_IV, &config).expect("a valid configuration")
+    });
+    let reference = Reference::hold(1, start());
+    let mut used = State::new();
+    let _ = first.step(&mut used, &at(start()), &reference);
+    let _ = second.step(&mut used, &at(start()), &reference);
+    // At rest where it holds there is nothing to correct, but for rounding.
+    let error = &used.data().rows.error;
+    assert!(error.iter().all(|error| error.abs() < 1e-12), "{error:?}");
 }

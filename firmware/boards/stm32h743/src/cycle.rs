@@ -1,4 +1,4 @@
-//! One control cycle: measure, compute, guard, send; and how long it took.
+//! One control cycle: measure, compute, ask the interlock, send; and how long it took.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,7 +6,7 @@ use controller_core::joint::{JointState, zeros};
 use controller_core::{Measurement, Reference};
 use cortex_m::peripheral::DWT;
 use embedded_hal::digital::{InputPin, OutputPin};
-use firmware::machine::Machine;
+use firmware::interlocked_controller::InterlockedController;
 
 use crate::joints::Joints;
 
@@ -17,9 +17,9 @@ pub static SHORTEST: AtomicU32 = AtomicU32::new(u32::MAX);
 /// Of the longest one.
 pub static LONGEST: AtomicU32 = AtomicU32::new(0);
 
-/// Controller with guard, bus, and what is remembered from cycle to cycle.
+/// Controller with interlock, bus, and what is remembered from cycle to cycle.
 pub struct Loop<J, E, D, H, S> {
-    machine: Machine<f64, E, D, H>,
+    interlocked: InterlockedController<f64, E, D, H>,
     joints: J,
     /// High while the operator asks for the drives.
     start: S,
@@ -37,15 +37,15 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
     /// Drives off. The processor runs at `clock_hz` \[Hz\]; the controller is made for
     /// cycles of `cycle_s` \[s\].
     pub fn new(
-        machine: Machine<f64, E, D, H>,
+        interlocked: InterlockedController<f64, E, D, H>,
         joints: J,
         start: S,
         clock_hz: f64,
         cycle_s: f64,
     ) -> Self {
         Self {
-            hold: Reference::hold(machine.controller().level_count(), zeros()),
-            machine,
+            hold: Reference::hold(interlocked.controller().level_count(), zeros()),
+            interlocked,
             joints,
             start,
             asked: false,
@@ -62,7 +62,7 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
     pub fn run(&mut self) {
         let begin = DWT::cycle_count();
         let Some(joints) = self.joints.measure() else {
-            self.machine.blind();
+            self.interlocked.blind();
             self.joints.send(&zeros(), &zeros());
             self.last = None;
             return;
@@ -79,7 +79,7 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
             dq: joints.dq,
             interval_s,
         };
-        let output = self.machine.cycle(&measurement, &self.hold);
+        let output = self.interlocked.cycle(&measurement, &self.hold);
         self.joints.send(&output.torque, &output.step.gravity);
 
         let taken = DWT::cycle_count().wrapping_sub(begin);
@@ -93,7 +93,7 @@ impl<J: Joints, E: InputPin, D: OutputPin, H: OutputPin, S: InputPin> Loop<J, E,
         if asks && !self.asked {
             self.hold.posture = joints.q;
             // Forgets also where levels have held so far.
-            self.machine.enable();
+            self.interlocked.enable();
         }
         self.asked = asks;
     }

@@ -6,7 +6,7 @@
 //! priorities are two lines.
 //!
 //! What is yours: [`joints::Joints`], the way to encoders and drives; the pins; the
-//! tasks, here those of the two-level experiment. Until there is a bus nothing is
+//! tasks, here those of the scenario `two-level`. Until there is a bus nothing is
 //! measured and the drives stay off.
 //!
 //! | pin | direction | meaning |
@@ -30,9 +30,9 @@ use controller_core::Controller;
 use cortex_m::interrupt::Mutex;
 use cortex_m::peripheral::NVIC;
 use cortex_m_rt::entry;
-use firmware::guard::Guard;
-use firmware::job::{CYCLE_S, JobKind, controller};
-use firmware::machine::Machine;
+use firmware::interlock::Interlock;
+use firmware::interlocked_controller::InterlockedController;
+use firmware::scenario::{CYCLE_S, FixedScenario, controller};
 use stm32h7xx_hal::gpio::{Edge, ExtiPin, Input, Output, PB0, PC0, PC13, PE1, PushPull};
 use stm32h7xx_hal::pac::{self, interrupt};
 use stm32h7xx_hal::prelude::*;
@@ -99,19 +99,19 @@ fn main() -> ! {
     emergency_stop.make_interrupt_source(&mut syscfg);
     emergency_stop.trigger_on_edge(&mut exti, Edge::Falling);
     emergency_stop.enable_interrupt(&mut exti);
-    let guard = Guard::new(
+    let interlock = Interlock::new(
         Pin(emergency_stop),
         Pin(e.pe1.into_push_pull_output()),
         Pin(b.pb0.into_push_pull_output()),
     );
 
-    let Ok(controller): Result<Controller<f64>, _> = controller(JobKind::TwoLevel) else {
+    let Ok(controller): Result<Controller<f64>, _> = controller(FixedScenario::TwoLevel) else {
         stop()
     };
     let hz = f64::from(clocks.clocks.c_ck().raw());
     let start = Pin(c.pc13.into_pull_down_input());
     let control = CONTROL.insert(Loop::new(
-        Machine::new(controller, guard),
+        InterlockedController::new(controller, interlock),
         NotConnected,
         start,
         hz,
@@ -157,7 +157,7 @@ fn TIM2() {
 }
 
 /// The emergency stop, above the cycle: drives off at once, by a register that needs
-/// no reading before. The guard notices the stop in the next cycle and stays off.
+/// no reading before. The interlock notices the stop in the next cycle and stays off.
 #[interrupt]
 fn EXTI0() {
     drives_off();

@@ -1,4 +1,4 @@
-//! Pins of the HAL, which implement embedded-hal 0.2, for the guard, which wants 1.0.
+//! Pins of the HAL, which implement embedded-hal 0.2, for the interlock, which wants 1.0.
 
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 use embedded_hal_02::digital::v2;

@@ -5,10 +5,12 @@
 
 use super::super::svg::{Anchor, Svg, text_width};
 use super::super::ticks::Ticks;
-use super::decimate;
+use super::chart::{Chart, Panel, Style};
+use super::decimate::decimate;
 use super::range::{self, Axis};
-use super::{Chart, POINTS, Panel, Scale, Series, Style};
 
+/// Most points of a drawn line.
+const POINTS: usize = 1500;
 const FONT: f64 = 12.0;
 const TITLE: f64 = 22.0;
 const LEGEND_ROW: f64 = 19.0;
@@ -37,65 +39,69 @@ struct Letter {
     text: String,
 }
 
-pub fn draw(chart: &Chart) -> Svg {
-    let ranges = range::horizontal(chart.x_range, &chart.panels);
-    let left = left_margin(chart);
-    let right = chart.width - right_margin(chart);
-    let x = Axis::linear(ranges, [left, right]);
-    let frame = Frame { left, right, x };
+impl Chart {
+    /// Draws it.
+    #[must_use]
+    pub fn draw(&self) -> Svg {
+        let ranges = range::horizontal(self.x_range, &self.panels);
+        let left = left_margin(self);
+        let right = self.width - right_margin(self);
+        let x = Axis::linear(ranges, [left, right]);
+        let frame = Frame { left, right, x };
 
-    let entries = legend(chart, left);
-    let legend_rows = entries
-        .iter()
-        .map(|(_, at, _)| at[1] as usize + 1)
-        .max()
-        .unwrap_or(0);
-    let letters = letters(chart, &frame);
-    let letter_rows = letters
-        .iter()
-        .map(|letter| letter.row + 1)
-        .max()
-        .unwrap_or(0);
-    let legend_top = if chart.title.is_empty() {
-        4.0
-    } else {
-        TITLE + 4.0
-    };
-    let letters_top = legend_top + legend_rows as f64 * LEGEND_ROW;
-    let top = letters_top + (letter_rows as f64 * LETTER_ROW).max(6.0) + 2.0;
-    let heights: f64 = chart.panels.iter().map(|panel| panel.height + GAP).sum();
-    let bottom = top + heights - GAP;
-    let height = bottom + 42.0;
+        let entries = legend(self, left);
+        let legend_rows = entries
+            .iter()
+            .map(|(_, at, _)| at[1] as usize + 1)
+            .max()
+            .unwrap_or(0);
+        let letters = letters(self, &frame);
+        let letter_rows = letters
+            .iter()
+            .map(|letter| letter.row + 1)
+            .max()
+            .unwrap_or(0);
+        let legend_top = if self.title.is_empty() {
+            4.0
+        } else {
+            TITLE + 4.0
+        };
+        let letters_top = legend_top + legend_rows as f64 * LEGEND_ROW;
+        let top = letters_top + (letter_rows as f64 * LETTER_ROW).max(6.0) + 2.0;
+        let heights: f64 = self.panels.iter().map(|panel| panel.height + GAP).sum();
+        let bottom = top + heights - GAP;
+        let height = bottom + 42.0;
 
-    let mut svg = Svg::new(
-        &chart.id,
-        [chart.width, height],
-        &chart.title,
-        &chart.description,
-    );
-    if !chart.title.is_empty() {
-        svg.text("t", [left, 16.0], Anchor::Start, &chart.title);
+        let mut svg = Svg::new(
+            &self.id,
+            [self.width, height],
+            &self.title,
+            &self.description,
+        );
+        if !self.title.is_empty() {
+            svg.text("t", [left, 16.0], Anchor::Start, &self.title);
+        }
+        for (style, [x, row], label) in &entries {
+            let y = legend_top + row * LEGEND_ROW + 9.0;
+            svg.line(&style.class(), [*x, y], [x + SAMPLE, y]);
+            svg.text("", [x + SAMPLE + 6.0, y + 4.0], Anchor::Start, label);
+        }
+        for letter in &letters {
+            // The lowest row belongs to the first letters.
+            let row = (letter_rows - 1 - letter.row) as f64;
+            let y = letters_top + row * LETTER_ROW + 12.0;
+            svg.text(letter.class, [letter.x, y], Anchor::Middle, &letter.text);
+        }
+        let mut y = top;
+        for (index, panel) in self.panels.iter().enumerate() {
+            let last = index + 1 == self.panels.len();
+            draw_panel(&mut svg, self, panel, &frame, y, index, last);
+            y += panel.height + GAP;
+        }
+        let middle = 0.5 * (frame.left + frame.right);
+        svg.text("m", [middle, bottom + 34.0], Anchor::Middle, &self.x_label);
+        svg
     }
-    for (style, [x, row], label) in &entries {
-        let y = legend_top + row * LEGEND_ROW + 9.0;
-        svg.line(&style.class(), [*x, y], [x + SAMPLE, y]);
-        svg.text("", [x + SAMPLE + 6.0, y + 4.0], Anchor::Start, label);
-    }
-    for letter in &letters {
-        // The lowest row belongs to the first letters.
-        let row = (letter_rows - 1 - letter.row) as f64;
-        let y = letters_top + row * LETTER_ROW + 12.0;
-        svg.text(letter.class, [letter.x, y], Anchor::Middle, &letter.text);
-    }
-    let mut y = top;
-    for (index, panel) in chart.panels.iter().enumerate() {
-        let last = index + 1 == chart.panels.len();
-        draw_panel(&mut svg, chart, panel, &frame, y, index, last);
-        y += panel.height + GAP;
-    }
-    let middle = 0.5 * (frame.left + frame.right);
-    svg.text("m", [middle, bottom + 34.0], Anchor::Middle, &chart.x_label);
-    svg
 }
 
 fn draw_panel(
@@ -152,7 +158,7 @@ fn draw_panel(
             .collect();
         svg.curve(&line.style.class(), &points, &clip);
     }
-    if panel.series.iter().all(Series::is_empty) {
+    if panel.is_empty() {
         let middle = [0.5 * (left + right), 0.5 * (top + bottom) + 4.0];
         svg.text("m halo", middle, Anchor::Middle, "no data");
     }
@@ -330,29 +336,4 @@ fn right_margin(chart: &Chart) -> f64 {
         limits.chain(ends.map(|line| text_width(&line.label, FONT)))
     });
     widths.fold(6.0, f64::max) + 14.0
-}
-
-impl Panel {
-    /// Height of a panel that is one of `count` in a chart.
-    #[must_use]
-    pub fn height_among(count: usize) -> f64 {
-        match count {
-            0 | 1 => 250.0,
-            2 => 170.0,
-            3 => 130.0,
-            _ => 86.0,
-        }
-    }
-
-    /// Whether no line has anything to draw.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.series.iter().all(Series::is_empty)
-    }
-
-    /// Whether the vertical axis is logarithmic.
-    #[must_use]
-    pub fn is_log(&self) -> bool {
-        matches!(self.scale, Scale::Log { .. })
-    }
 }

@@ -1,7 +1,7 @@
 //! Ranges of axes and the way from values to pixels.
 
 use super::super::ticks::{self, Ticks};
-use super::{Panel, Scale};
+use super::chart::{Panel, Scale};
 
 /// A limit this many times above the data still widens the axis; beyond, it
 /// would flatten the lines and is only named.
@@ -36,7 +36,7 @@ impl Axis {
     /// The vertical axis of a panel between the pixels `from` (bottom) and `to`.
     pub fn of(panel: &Panel, [from, to]: [f64; 2]) -> Self {
         let [low, high] = vertical(panel);
-        let log = matches!(panel.scale, Scale::Log { .. });
+        let log = panel.is_log();
         Self {
             low,
             high,

@@ -2,7 +2,7 @@
 
 use std::net::{SocketAddr, ToSocketAddrs};
 
-use crate::plant::DEAD_CYCLES_MAX;
+use controller_core::ranges::DEAD_CYCLES_MAX;
 
 /// A seed.
 ///
@@ -20,7 +20,7 @@ pub fn seed(text: &str) -> Result<u64, String> {
 pub fn dead_cycles(text: &str) -> Result<u8, String> {
     let cycles = text.parse().ok();
     cycles
-        .filter(|cycles| usize::from(*cycles) <= DEAD_CYCLES_MAX)
+        .filter(|cycles| *cycles <= DEAD_CYCLES_MAX)
         .ok_or_else(|| format!("whole numbers 0 to {DEAD_CYCLES_MAX}"))
 }
 

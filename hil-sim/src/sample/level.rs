@@ -4,44 +4,29 @@ use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::task::orientation;
 use controller_core::{Axes, LinkPoint, Reference, Target};
 
+use crate::arm_points;
 use crate::plant::PlantModel;
-use crate::scenario::{self, Scenario, TaskSpec};
+use record::run::LevelSample;
 
-/// One level at one instant, true values.
-#[derive(Clone, Debug, Default)]
-pub struct LevelInstant {
-    /// Desired coordinates of its axes \[m\], or the desired quaternion.
-    pub desired: Vec<f64>,
-    /// True coordinates of its axes \[m\], or the true quaternion.
-    pub actual: Vec<f64>,
-    /// Norm of their difference \[m\], or the angle between them about the axes \[rad\].
-    pub error: f64,
-    /// Norm of the task acceleration that the torques of lower levels and of the
-    /// null space cause on this arm \[m/s2\], or \[rad/s2\]; NaN where it is not known.
-    pub leak: f64,
-    /// Desired position of the point \[m\].
-    pub desired_point: [f64; 3],
-    /// True position of the point \[m\].
-    pub actual_point: [f64; 3],
-}
+use cell::scenario::{LevelSpec, Scenario, TaskSpec};
 
-/// The points and axes of a scenario's levels.
-pub(crate) struct Places(pub Vec<Place>);
+/// What is looked at of a scenario's levels: their points and axes.
+pub(crate) struct LevelProbes(pub Vec<LevelProbe>);
 
-pub(crate) struct Place {
+pub(crate) struct LevelProbe {
     task: TaskSpec,
     point: LinkPoint,
     axes: Axes,
 }
 
-impl Places {
+impl LevelProbes {
     pub fn new(scenario: &Scenario) -> Self {
-        let place = |level: &scenario::LevelSpec| Place {
+        let probe = |level: &LevelSpec| LevelProbe {
             task: level.task,
             point: level.point.resolve(),
             axes: Axes::from_name(&level.axes).unwrap_or(Axes::XYZ),
         };
-        Self(scenario.levels.iter().map(place).collect())
+        Self(scenario.levels.iter().map(probe).collect())
     }
 
     /// Every level at the plant's true state.
@@ -50,32 +35,32 @@ impl Places {
         plant: &PlantModel,
         truth: &JointState<f64>,
         reference: &Reference<f64>,
-    ) -> Vec<LevelInstant> {
+    ) -> Vec<LevelSample> {
         let levels = self.0.iter().zip(reference.targets());
         levels
-            .map(|(place, target)| place.instant(plant, truth, target))
+            .map(|(probe, target)| probe.sample(plant, truth, target))
             .collect()
     }
 }
 
-impl Place {
+impl LevelProbe {
     /// The level at the plant's true state. A level that holds has no desired
     /// coordinates but its own.
-    fn instant(
+    fn sample(
         &self,
         plant: &PlantModel,
         truth: &JointState<f64>,
         target: &Target<f64>,
-    ) -> LevelInstant {
+    ) -> LevelSample {
         let (x, _) = self.point(plant, truth);
-        let mut shown = LevelInstant {
+        let mut shown = LevelSample {
             desired_point: x.into(),
             actual_point: x.into(),
             leak: f64::NAN,
-            ..LevelInstant::default()
+            ..LevelSample::default()
         };
         if self.task == TaskSpec::Orientation {
-            let actual = scenario::orientation(&truth.q, self.point.link.number());
+            let actual = arm_points::orientation(&truth.q, self.point.link.number());
             let desired = match target {
                 Target::Orientation { q, .. } => *q,
                 _ => actual,
@@ -135,27 +120,11 @@ impl Place {
                 let (_, acceleration) = self.point(plant, &moving);
                 self.norm(&acceleration)
             }
-            TaskSpec::Orientation => {
-                self.norm(&angular_velocity(plant, &moving, self.point.link.number()))
-            }
+            TaskSpec::Orientation => self.norm(&arm_points::angular_velocity(
+                plant,
+                &moving,
+                self.point.link.number(),
+            )),
         }
     }
-}
-
-/// Angular velocity of a link \[rad/s\], from the velocities of its frame's origin
-/// and of the ends of its unit axes: w = sum of e_i x (de_i) / 2.
-pub(crate) fn angular_velocity(
-    plant: &PlantModel,
-    state: &JointState<f64>,
-    link: usize,
-) -> Vector3<f64> {
-    let (origin, origin_rate) = plant.point(state, link, &Vector3::zeros());
-    let mut sum = Vector3::zeros();
-    for axis in 0..3 {
-        let mut end = Vector3::zeros();
-        end[axis] = 1.0;
-        let (tip, tip_rate) = plant.point(state, link, &end);
-        sum += (tip - origin).cross(&(tip_rate - origin_rate));
-    }
-    sum / 2.0
 }

@@ -5,9 +5,9 @@ use controller_core::joint::Vector3;
 use controller_core::task::trajectory::quintic;
 use serde::Deserialize;
 
-use super::Interval;
+use super::contact::{Interval, validate_times};
+use super::point::PointSpec;
 use crate::invalid::{Invalid, in_range, positive};
-use crate::scenario::PointSpec;
 
 /// F = max(0, k (y0 + travel b((t - from) / approach) b((to - t) / approach) - y) - d dy),
 /// y the point's coordinate along `direction`, y0 its value at the start.
@@ -51,7 +51,7 @@ impl Hand {
     /// What cannot be used.
     pub fn validate(&self) -> Result<(), Invalid> {
         self.point.validate()?;
-        let half = super::validate_times(self.from_s, self.to_s)? / 2.0;
+        let half = validate_times(self.from_s, self.to_s)? / 2.0;
         positive("approach_s", self.approach_s, half)?;
         positive("stiffness_n_m", self.stiffness_n_m, 1e5)?;
         in_range("damping_ns_m", self.damping_ns_m, 0.0, 1e4)?;

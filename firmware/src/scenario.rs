@@ -1,4 +1,4 @@
-//! The two experiments that the target runs, as constants: the same as the
+//! The two scenarios that the target runs, as constants: the same as the
 //! built-in scenarios of that name, which a test checks.
 
 use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
@@ -13,17 +13,17 @@ use controller_core::{
 /// Nominal cycle of both \[s\].
 pub const CYCLE_S: f64 = 0.002;
 
-/// A built-in experiment.
+/// One of the two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum JobKind {
+pub enum FixedScenario {
     /// The flange follows a circle.
     TwoLevel = 0,
     /// The flange follows a circle, below it the wrist holds its place.
     Case1 = 1,
 }
 
-impl JobKind {
+impl FixedScenario {
     /// Both.
     pub const ALL: [Self; 2] = [Self::TwoLevel, Self::Case1];
 
@@ -36,10 +36,12 @@ impl JobKind {
         }
     }
 
-    /// The job with this number.
+    /// The scenario with this number.
     #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|&kind| kind as u8 == number)
+        Self::ALL
+            .into_iter()
+            .find(|&scenario| scenario as u8 == number)
     }
 
     /// Posture at the start \[deg\].
@@ -59,9 +61,9 @@ impl JobKind {
     }
 }
 
-/// An experiment ready to run.
+/// A scenario ready to run.
 #[derive(Clone, Debug)]
-pub struct Job<T: Real> {
+pub struct ReadyScenario<T: Real> {
     /// The controller.
     pub controller: Controller<T>,
     /// The arm at the start: where the motions begin, and q_d.
@@ -83,15 +85,15 @@ const WRIST: LinkPoint = LinkPoint {
     offset: [0.0; 3],
 };
 
-/// The configuration of an experiment, made in the caller's place for it.
+/// The configuration of a scenario, made in the caller's place for it.
 ///
 /// # Errors
 /// Never for these constants.
 #[inline(never)]
-pub fn config(kind: JobKind) -> Result<ControllerConfig, ConfigError> {
-    let tasks: &[Task] = match (kind, &LEVELS) {
-        (JobKind::TwoLevel, [flange, _]) => core::slice::from_ref(flange),
-        (JobKind::Case1, both) => both,
+pub fn config(scenario: FixedScenario) -> Result<ControllerConfig, ConfigError> {
+    let tasks: &[Task] = match (scenario, &LEVELS) {
+        (FixedScenario::TwoLevel, [flange, _]) => core::slice::from_ref(flange),
+        (FixedScenario::Case1, both) => both,
     };
     Ok(ControllerConfig {
         tasks: TaskSet::new(tasks)?,
@@ -105,28 +107,28 @@ pub fn config(kind: JobKind) -> Result<ControllerConfig, ConfigError> {
     })
 }
 
-/// The controller of an experiment, from the arm's tables on.
+/// The controller of a scenario, from the arm's tables on.
 ///
 /// # Errors
 /// Never for these constants.
-pub fn controller<T: Real>(kind: JobKind) -> Result<Controller<T>, ConfigError> {
+pub fn controller<T: Real>(scenario: FixedScenario) -> Result<Controller<T>, ConfigError> {
     // The configuration stays in the result that brought it: taken out, it would lie on
     // the stack twice.
-    match &config(kind) {
+    match &config(scenario) {
         Ok(config) => Controller::new(&LWR_IV, config),
         Err(error) => Err(*error),
     }
 }
 
-impl<T: Real> Job<T> {
+impl<T: Real> ReadyScenario<T> {
     /// Builds the controller.
     ///
     /// # Errors
     /// Never for these constants.
-    pub fn new(kind: JobKind) -> Result<Self, ConfigError> {
-        let controller = controller(kind)?;
-        let start = kind.start_deg().map(f64::to_radians).map(T::from_f64);
-        let (radius_m, period_s) = kind.flange_circle();
+    pub fn new(scenario: FixedScenario) -> Result<Self, ConfigError> {
+        let controller = controller(scenario)?;
+        let start = scenario.start_deg().map(f64::to_radians).map(T::from_f64);
+        let (radius_m, period_s) = scenario.flange_circle();
         Ok(Self {
             origin: controller.rest_reference(&JointVector::from(start)),
             circle: Trajectory::Turn {

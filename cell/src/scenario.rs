@@ -2,9 +2,13 @@
 //! null-space compliance, contacts and acceptance limits. The built-in scenarios are TOML files
 //! like any other.
 
-mod geometry;
+mod contact;
+mod hand;
+mod level;
 mod locate;
+mod metric;
 mod point;
+mod push;
 mod reference;
 mod session;
 
@@ -12,20 +16,22 @@ use std::path::Path;
 
 use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::gain::diagonal;
-use controller_core::joint::{DOF, JointState, JointVector};
+use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::ranges::{MAX_LEVELS, MAX_ROWS};
-use controller_core::{Axes, ControllerConfig, Reference, Target, Task, TaskGains, TaskSet};
+use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS};
+use controller_core::{ControllerConfig, Reference, Target, TaskSet};
 use serde::{Deserialize, Deserializer};
 
-use crate::contact::{Contacts, Hand, Push};
 use crate::invalid::{Invalid, in_range, positive};
-use crate::metrics::Metric;
-use crate::names::{MeasurementKind, Named};
-use crate::plant::{DEAD_CYCLES_MAX, PlantKind, PlantModel};
+use crate::names::{MeasurementKind, Named, PlantKind};
+use level::GAIN_MAX;
 
-pub use geometry::orientation;
+pub use contact::Interval;
+pub use hand::{Direction, Hand};
+pub use level::{AxisGain, LevelSpec, TaskSpec};
+pub use metric::{Metric, Unit};
 pub use point::PointSpec;
+pub use push::Push;
 pub use reference::ReferenceSpec;
 pub use session::ScenarioSource;
 
@@ -42,9 +48,6 @@ pub const DURATION_MAX_S: f64 = 3600.0;
 
 /// Shortest and longest cycle \[ms\].
 pub const CYCLE_RANGE_MS: [f64; 2] = [0.1, 20.0];
-
-/// Largest gain a file may ask for; far beyond any use, far below overflow.
-const GAIN_MAX: f64 = 1e6;
 
 /// An experiment, as in its file.
 #[derive(Clone, Debug, Deserialize)]
@@ -77,49 +80,6 @@ pub struct Scenario {
     /// What a run must stay below.
     #[serde(rename = "limit", default)]
     pub limits: Vec<Limit>,
-}
-
-/// What a level tracks.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum TaskSpec {
-    /// The position of the point.
-    #[default]
-    Position,
-    /// The orientation of the point's link.
-    Orientation,
-}
-
-/// One task level.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LevelSpec {
-    /// Position or orientation.
-    #[serde(default)]
-    pub task: TaskSpec,
-    /// Controlled point.
-    pub point: PointSpec,
-    /// Controlled base-plate axes, such as "xyz".
-    pub axes: String,
-    /// K_p \[1/s2\].
-    pub stiffness: AxisGain,
-    /// K_d \[1/s\].
-    pub damping: AxisGain,
-    /// Motion of the point.
-    pub reference: ReferenceSpec,
-}
-
-/// One gain for all axes of a task, or one for each.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected a number, or a list with a number per axis"
-)]
-pub enum AxisGain {
-    /// The same on every axis.
-    Uniform(f64),
-    /// In the order of the task's axes.
-    PerAxis(Vec<f64>),
 }
 
 /// Compliance of the null space.
@@ -314,7 +274,7 @@ impl Scenario {
             PlantKind::from_name(&limit.plant).map_err(place)?;
             MeasurementKind::from_name(&limit.measurement).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
-            if limit.dead_cycles > DEAD_CYCLES_MAX {
+            if limit.dead_cycles > usize::from(DEAD_CYCLES_MAX) {
                 let allowed = format_args!("0 to {DEAD_CYCLES_MAX}");
                 return Err(place(Invalid::new(
                     "dead_cycles",
@@ -380,10 +340,13 @@ impl Scenario {
         })
     }
 
-    /// Pushes and hands, before the run.
+    /// When its contacts act: pushes, then hands.
     #[must_use]
-    pub fn contacts(&self) -> Contacts {
-        Contacts::new(&self.pushes, &self.hands)
+    pub fn intervals(&self) -> Vec<Interval> {
+        let pushes = self.pushes.iter().map(Push::interval);
+        pushes
+            .chain(self.hands.iter().map(Hand::interval))
+            .collect()
     }
 
     /// The reference at time `t_s`, from where the levels are at the start, with
@@ -402,17 +365,10 @@ impl Scenario {
         }
         reference
     }
-
-    /// Where the levels' points and frames are in the posture `q` \[rad\],
-    /// base-plate frame.
-    #[must_use]
-    pub fn origins_at(&self, q: &JointVector<f64>) -> Vec<Target<f64>> {
-        self.levels.iter().map(|level| level.rest_at(q)).collect()
-    }
 }
 
 /// Reads one number per joint, and says how many there are if not seven.
-pub(crate) fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
+pub fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
     let values = Vec::<f64>::deserialize(deserializer)?;
     let count = values.len();
     values.try_into().map_err(|_| {
@@ -434,105 +390,6 @@ impl NullSpaceSpec {
         }
         positive("damping_rate", self.damping_rate, GAIN_MAX)?;
         in_range("rate_gain", self.rate_gain, 0.0, GAIN_MAX).map(drop)
-    }
-}
-
-impl LevelSpec {
-    fn validate(&self) -> Result<(), Invalid> {
-        self.point.validate()?;
-        let Some(axes) = Axes::from_name(&self.axes) else {
-            return Err(Invalid::new(
-                "axes",
-                &self.axes,
-                "letters of xyz in this order, such as xyz, xy, z",
-            ));
-        };
-        for (name, gain) in [("stiffness", &self.stiffness), ("damping", &self.damping)] {
-            if let AxisGain::PerAxis(values) = gain
-                && values.len() != axes.count()
-            {
-                let allowed = format!("1 or {} for axes \"{}\"", axes.count(), self.axes);
-                return Err(Invalid::new(
-                    name,
-                    format_args!("{} values", values.len()),
-                    allowed,
-                ));
-            }
-            for value in gain.values() {
-                positive(name, value, GAIN_MAX)?;
-            }
-        }
-        if self.reference.is_rotation() == Some(self.task != TaskSpec::Orientation) {
-            let (given, allowed) = match self.task {
-                TaskSpec::Position => ("swing", "hold, move, circle, spiral for a position"),
-                TaskSpec::Orientation => ("a motion of a point", "hold, swing for an orientation"),
-            };
-            return Err(Invalid::new("reference", given, allowed));
-        }
-        self.reference
-            .validate()
-            .map_err(|error| error.in_table("reference"))
-    }
-
-    /// At rest where the level's point or frame is in a posture \[rad\].
-    #[must_use]
-    pub fn rest_at(&self, q: &JointVector<f64>) -> Target<f64> {
-        let point = self.point.resolve();
-        let link = point.link.number();
-        match self.task {
-            TaskSpec::Position => {
-                let state = JointState {
-                    q: *q,
-                    dq: JointVector::zeros(),
-                };
-                let (x, _) = PlantModel::new(&LWR_IV).point(&state, link, &point.offset.into());
-                Target::position(x)
-            }
-            TaskSpec::Orientation => Target::orientation(geometry::orientation(q, link)),
-        }
-    }
-
-    /// The core's task. The level must be valid.
-    #[must_use]
-    pub fn task(&self) -> Task {
-        let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
-        let spread = |gain: &AxisGain| match gain {
-            AxisGain::Uniform(value) => [*value; 3],
-            AxisGain::PerAxis(values) => {
-                let mut values = values.iter();
-                axes.flags().map(|on| {
-                    if on {
-                        *values.next().unwrap_or(&1.0)
-                    } else {
-                        1.0
-                    }
-                })
-            }
-        };
-        let gains = TaskGains::diagonal(spread(&self.stiffness), spread(&self.damping));
-        let point = self.point.resolve();
-        match self.task {
-            TaskSpec::Position => Task::position(point, axes, gains),
-            TaskSpec::Orientation => Task::orientation(point.link, axes, gains),
-        }
-    }
-
-    /// "flange xyz".
-    #[must_use]
-    pub fn label(&self) -> String {
-        match self.task {
-            TaskSpec::Position => format!("{} {}", self.point.label(), self.axes),
-            TaskSpec::Orientation => format!("{} about {}", self.point.label(), self.axes),
-        }
-    }
-}
-
-impl AxisGain {
-    fn values(&self) -> Vec<f64> {
-        match self {
-            Self::Uniform(value) => vec![*value],
-            Self::PerAxis(values) => values.clone(),
-        }
     }
 }
 

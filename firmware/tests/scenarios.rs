@@ -1,9 +1,10 @@
-//! The constants of the jobs are the built-in scenarios.
+//! The constants are those of the built-in scenarios.
 
+use cell::scenario::Scenario;
 use controller_core::Target;
 use controller_core::joint::Vector3;
-use firmware::job::{CYCLE_S, Job, JobKind, config};
-use hil_sim::scenario::Scenario;
+use firmware::scenario::{CYCLE_S, FixedScenario, ReadyScenario, config};
+use hil_sim::arm_points::origins;
 
 type Parts = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
@@ -16,18 +17,18 @@ fn parts(target: &Target<f64>) -> Parts {
 
 #[test]
 fn jobs_are_the_scenarios_of_their_name() {
-    for kind in JobKind::ALL {
-        let scenario = Scenario::find(kind.name()).expect("built in");
-        let wanted = scenario.controller_config(0).expect("a valid scenario");
-        assert_eq!(config(kind), Ok(wanted));
-        assert_eq!(scenario.cycle_s(), CYCLE_S);
-        let job = Job::<f64>::new(kind).expect("a valid job");
-        assert_eq!(job.origin.posture, scenario.start());
-        let origins = scenario.origins_at(&scenario.start());
+    for scenario in FixedScenario::ALL {
+        let built_in = Scenario::find(scenario.name()).expect("built in");
+        let wanted = built_in.controller_config(0).expect("a valid scenario");
+        assert_eq!(config(scenario), Ok(wanted));
+        assert_eq!(built_in.cycle_s(), CYCLE_S);
+        let ready = ReadyScenario::<f64>::new(scenario).expect("a valid scenario");
+        assert_eq!(ready.origin.posture, built_in.start());
+        let origins = origins(&built_in, &built_in.start());
         for cycle in (0..10_000).step_by(37) {
             let t_s = f64::from(cycle) * CYCLE_S;
-            let wanted = scenario.reference(&origins, &scenario.start(), t_s);
-            let found = job.reference(cycle);
+            let wanted = built_in.reference(&origins, &built_in.start(), t_s);
+            let found = ready.reference(cycle);
             let (found, wanted) = (found.targets(), wanted.targets());
             assert_eq!(found.len(), wanted.len());
             for (found, wanted) in found.iter().zip(wanted) {

@@ -6,6 +6,9 @@ use crate::invalid::Invalid;
 use crate::terminal::tell;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+/// Exit code of anything that cannot be used.
+pub const USAGE: u8 = 2;
+
 /// Prints help and version as they are, an error of `program` in one line;
 /// `commands` are the ones it has.
 pub fn report(program: &str, commands: &[&str], error: &clap::Error) -> ExitCode {
@@ -20,7 +23,7 @@ pub fn report(program: &str, commands: &[&str], error: &clap::Error) -> ExitCode
         .collect();
     let text = line(program, commands, &arguments, error);
     tell(format_args!("error: {}", Invalid::line(text)));
-    ExitCode::from(super::USAGE)
+    ExitCode::from(USAGE)
 }
 
 fn line(program: &str, commands: &[&str], arguments: &[String], error: &clap::Error) -> String {

@@ -4,9 +4,9 @@ use controller_core::joint::JointVector;
 use controller_core::{Measurement, Reference};
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::digital::{Mock, State, Transaction};
-use firmware::guard::{Cause, Guard};
-use firmware::job::{CYCLE_S, Job, JobKind};
-use firmware::machine::Machine;
+use firmware::interlock::{Cause, Interlock};
+use firmware::interlocked_controller::InterlockedController;
+use firmware::scenario::{CYCLE_S, FixedScenario, ReadyScenario};
 
 const HIGH: State = State::High;
 const LOW: State = State::Low;
@@ -28,11 +28,11 @@ fn play(
     stop: &[State],
     drives: &[State],
     heartbeat: &[State],
-    script: impl FnOnce(&mut Guard<Mock, Mock, Mock>),
+    script: impl FnOnce(&mut Interlock<Mock, Mock, Mock>),
 ) {
-    let mut guard = Guard::new(input(stop), output(drives), output(heartbeat));
-    script(&mut guard);
-    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    let mut interlock = Interlock::new(input(stop), output(drives), output(heartbeat));
+    script(&mut interlock);
+    let (mut stop, mut drives, mut heartbeat) = interlock.release();
     stop.done();
     drives.done();
     heartbeat.done();
@@ -44,12 +44,12 @@ fn drives_wait_for_a_request_and_the_heart_beats_without() {
         &[HIGH; 4],
         &[LOW, LOW, LOW, HIGH, HIGH, LOW],
         &[LOW, HIGH, LOW, HIGH, LOW, LOW],
-        |guard| {
-            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
-            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
-            guard.enable();
-            assert_eq!(guard.cycle(true), Ok(()));
-            assert_eq!(guard.cycle(true), Ok(()));
+        |interlock| {
+            assert_eq!(interlock.cycle(true), Err(Cause::NotEnabled));
+            assert_eq!(interlock.cycle(true), Err(Cause::NotEnabled));
+            interlock.enable();
+            assert_eq!(interlock.cycle(true), Ok(()));
+            assert_eq!(interlock.cycle(true), Ok(()));
         },
     );
 }
@@ -60,13 +60,13 @@ fn the_emergency_stop_is_safe_in_its_cycle_and_stays_so_when_let_go() {
         &[HIGH, LOW, HIGH, HIGH],
         &[LOW, HIGH, LOW, LOW, HIGH, LOW],
         &[LOW, HIGH, LOW, HIGH, LOW, LOW],
-        |guard| {
-            guard.enable();
-            assert_eq!(guard.cycle(true), Ok(()));
-            assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
-            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
-            guard.enable();
-            assert_eq!(guard.cycle(true), Ok(()));
+        |interlock| {
+            interlock.enable();
+            assert_eq!(interlock.cycle(true), Ok(()));
+            assert_eq!(interlock.cycle(true), Err(Cause::EmergencyStop));
+            assert_eq!(interlock.cycle(true), Err(Cause::NotEnabled));
+            interlock.enable();
+            assert_eq!(interlock.cycle(true), Ok(()));
         },
     );
 }
@@ -77,10 +77,10 @@ fn a_request_while_the_stop_is_pressed_counts_for_nothing() {
         &[LOW, HIGH],
         &[LOW, LOW, LOW, LOW],
         &[LOW, LOW, HIGH, LOW],
-        |guard| {
-            guard.enable();
-            assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
-            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+        |interlock| {
+            interlock.enable();
+            assert_eq!(interlock.cycle(true), Err(Cause::EmergencyStop));
+            assert_eq!(interlock.cycle(true), Err(Cause::NotEnabled));
         },
     );
 }
@@ -91,12 +91,12 @@ fn a_fault_is_safe_in_its_cycle_and_the_heart_stands_still() {
         &[HIGH; 4],
         &[LOW, HIGH, LOW, LOW, LOW, LOW],
         &[LOW, HIGH, LOW, LOW, HIGH, LOW],
-        |guard| {
-            guard.enable();
-            assert_eq!(guard.cycle(true), Ok(()));
-            assert_eq!(guard.cycle(false), Err(Cause::Controller));
-            assert_eq!(guard.cycle(false), Err(Cause::Controller));
-            assert_eq!(guard.cycle(true), Err(Cause::NotEnabled));
+        |interlock| {
+            interlock.enable();
+            assert_eq!(interlock.cycle(true), Ok(()));
+            assert_eq!(interlock.cycle(false), Err(Cause::Controller));
+            assert_eq!(interlock.cycle(false), Err(Cause::Controller));
+            assert_eq!(interlock.cycle(true), Err(Cause::NotEnabled));
         },
     );
 }
@@ -105,15 +105,15 @@ fn a_fault_is_safe_in_its_cycle_and_the_heart_stands_still() {
 fn a_stop_that_cannot_be_read_counts_as_pressed() {
     let broken = Transaction::get(HIGH).with_error(MockError::Io(std::io::ErrorKind::Other));
     let stop = Mock::new(&[Transaction::get(HIGH), broken]);
-    let mut guard = Guard::new(
+    let mut interlock = Interlock::new(
         stop,
         output(&[LOW, HIGH, LOW, LOW]),
         output(&[LOW, HIGH, LOW, LOW]),
     );
-    guard.enable();
-    assert_eq!(guard.cycle(true), Ok(()));
-    assert_eq!(guard.cycle(true), Err(Cause::EmergencyStop));
-    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    interlock.enable();
+    assert_eq!(interlock.cycle(true), Ok(()));
+    assert_eq!(interlock.cycle(true), Err(Cause::EmergencyStop));
+    let (mut stop, mut drives, mut heartbeat) = interlock.release();
     stop.done();
     drives.done();
     heartbeat.done();
@@ -128,62 +128,62 @@ fn an_output_that_fails_takes_the_other_one_down() {
         Transaction::set(LOW),
         Transaction::set(LOW),
     ]);
-    let mut guard = Guard::new(input(&[HIGH]), drives, output(&[LOW, HIGH, LOW, LOW]));
-    guard.enable();
-    assert_eq!(guard.cycle(true), Err(Cause::Output));
-    let (mut stop, mut drives, mut heartbeat) = guard.release();
+    let mut interlock = Interlock::new(input(&[HIGH]), drives, output(&[LOW, HIGH, LOW, LOW]));
+    interlock.enable();
+    assert_eq!(interlock.cycle(true), Err(Cause::Output));
+    let (mut stop, mut drives, mut heartbeat) = interlock.release();
     stop.done();
     drives.done();
     heartbeat.done();
 }
 
-/// The whole machine: torque only while the drives run, zero from the cycle of a
+/// Controller and interlock: torque only while the drives run, zero from the cycle of a
 /// fault on, and again after it is cleared on purpose.
 #[test]
 fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
-    let job = Job::<f64>::new(JobKind::TwoLevel).expect("a valid job");
-    let guard = Guard::new(
+    let ready = ReadyScenario::<f64>::new(FixedScenario::TwoLevel).expect("a valid scenario");
+    let interlock = Interlock::new(
         input(&[HIGH; 7]),
         output(&[LOW, LOW, HIGH, LOW, LOW, HIGH, LOW, LOW, LOW]),
         output(&[LOW, HIGH, LOW, LOW, LOW, HIGH, LOW, HIGH, LOW]),
     );
-    let mut machine = Machine::new(job.controller.clone(), guard);
+    let mut interlocked = InterlockedController::new(ready.controller.clone(), interlock);
     let good = Measurement {
-        q: job.origin.posture,
+        q: ready.origin.posture,
         dq: JointVector::zeros(),
         interval_s: CYCLE_S,
     };
     let mut bad = good;
     bad.dq[3] = f64::NAN;
 
-    let waiting = machine.cycle(&good, &job.reference(0));
+    let waiting = interlocked.cycle(&good, &ready.reference(0));
     assert_eq!(waiting.stopped, Some(Cause::NotEnabled));
     assert_eq!(waiting.torque, JointVector::zeros());
-    machine.enable();
-    let running = machine.cycle(&good, &job.reference(1));
+    interlocked.enable();
+    let running = interlocked.cycle(&good, &ready.reference(1));
     assert_eq!(running.stopped, None);
     assert_eq!(running.torque, running.step.torque);
     assert!(running.torque[1].abs() > 10.0);
-    let stopped = machine.cycle(&bad, &job.reference(2));
+    let stopped = interlocked.cycle(&bad, &ready.reference(2));
     assert_eq!(stopped.stopped, Some(Cause::Controller));
     assert_eq!(stopped.torque, JointVector::zeros());
-    let latched = machine.cycle(&good, &job.reference(3));
+    let latched = interlocked.cycle(&good, &ready.reference(3));
     assert_eq!(latched.stopped, Some(Cause::Controller));
-    machine.enable();
-    assert_eq!(machine.cycle(&good, &job.reference(4)).stopped, None);
+    interlocked.enable();
+    assert_eq!(interlocked.cycle(&good, &ready.reference(4)).stopped, None);
 
     // No measurement at all: off, and off it stays.
-    machine.blind();
-    let after = machine.cycle(&good, &job.reference(5));
+    interlocked.blind();
+    let after = interlocked.cycle(&good, &ready.reference(5));
     assert_eq!(after.stopped, Some(Cause::NotEnabled));
 
-    let numbers: Vec<_> = machine
+    let numbers: Vec<_> = interlocked
         .recorder()
         .iter()
         .map(|cycle| cycle.number)
         .collect();
     assert_eq!(numbers, [0, 1, 2, 3, 4, 5]);
-    let (mut stop, mut drives, mut heartbeat) = machine.release();
+    let (mut stop, mut drives, mut heartbeat) = interlocked.release();
     stop.done();
     drives.done();
     heartbeat.done();
@@ -193,38 +193,38 @@ fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
 /// held where it is when they are asked for, not where the first measurement was.
 #[test]
 fn levels_hold_where_the_drives_are_asked_for() {
-    let job = Job::<f64>::new(JobKind::Case1).expect("a valid job");
+    let ready = ReadyScenario::<f64>::new(FixedScenario::Case1).expect("a valid scenario");
     let at = |q| Measurement {
         q,
         dq: JointVector::zeros(),
         interval_s: CYCLE_S,
     };
-    let first = job.origin.posture;
+    let first = ready.origin.posture;
     let sunk = first + JointVector::repeat(0.1);
     let asked = |before: usize, reference: &mut Reference<f64>| {
         let off = vec![LOW; before];
         let beats: Vec<State> = [HIGH, LOW].into_iter().cycle().take(before + 1).collect();
-        let guard = Guard::new(
+        let interlock = Interlock::new(
             input(&vec![HIGH; before + 1]),
             output(&[&[LOW], &off[..], &[HIGH, LOW]].concat()),
             output(&[&[LOW], &beats[..], &[LOW]].concat()),
         );
-        let mut machine = Machine::new(job.controller.clone(), guard);
+        let mut interlocked = InterlockedController::new(ready.controller.clone(), interlock);
         for _ in 0..before {
-            let waiting = machine.cycle(&at(first), reference);
+            let waiting = interlocked.cycle(&at(first), reference);
             assert_eq!(waiting.stopped, Some(Cause::NotEnabled));
         }
         reference.posture = sunk;
-        machine.enable();
-        let output = machine.cycle(&at(sunk), reference);
+        interlocked.enable();
+        let output = interlocked.cycle(&at(sunk), reference);
         assert_eq!(output.stopped, None);
-        let (mut stop, mut drives, mut heartbeat) = machine.release();
+        let (mut stop, mut drives, mut heartbeat) = interlocked.release();
         stop.done();
         drives.done();
         heartbeat.done();
         output.torque
     };
-    let levels = job.controller.level_count();
+    let levels = ready.controller.level_count();
     let held = asked(3, &mut Reference::hold(levels, JointVector::zeros()));
-    assert_eq!(held, asked(0, &mut job.controller.rest_reference(&sunk)));
+    assert_eq!(held, asked(0, &mut ready.controller.rest_reference(&sunk)));
 }

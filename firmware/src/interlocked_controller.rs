@@ -6,17 +6,17 @@ use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Reference, State, Step};
 use embedded_hal::digital::{InputPin, OutputPin};
 
-use crate::guard::{Cause, Guard};
+use crate::interlock::{Cause, Interlock};
 
 /// Cycles kept for after a stop.
 pub const RECORDED: usize = 64;
 
-/// Controller, its state, guard and recorder.
-pub struct Machine<T: Real, E, D, H> {
+/// Controller, its state, interlock and recorder.
+pub struct InterlockedController<T: Real, E, D, H> {
     controller: Controller<T>,
     state: State<T>,
     recorder: Recorder<T, RECORDED>,
-    guard: Guard<E, D, H>,
+    interlock: Interlock<E, D, H>,
 }
 
 /// What goes to the drives this cycle.
@@ -30,32 +30,32 @@ pub struct Output<T: Real> {
     pub step: Step<T>,
 }
 
-impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
+impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> InterlockedController<T, E, D, H> {
     /// Drives off, nothing observed.
     #[must_use]
-    pub fn new(controller: Controller<T>, guard: Guard<E, D, H>) -> Self {
+    pub fn new(controller: Controller<T>, interlock: Interlock<E, D, H>) -> Self {
         Self {
             controller,
             state: State::new(),
             recorder: Recorder::new(),
-            guard,
+            interlock,
         }
     }
 
     /// Clears a fault and asks for the drives: deliberate, never by itself.
     pub fn enable(&mut self) {
         self.state.reset();
-        self.guard.enable();
+        self.interlock.enable();
     }
 
-    /// One cycle: law, record, guard. Where the drives are off the observer is told
+    /// One cycle: law, record, interlock. Where the drives are off the observer is told
     /// that no torque acted.
     pub fn cycle(&mut self, measurement: &Measurement<T>, reference: &Reference<T>) -> Output<T> {
         let step = self
             .controller
             .step(&mut self.state, measurement, reference);
         self.recorder.push(measurement, &step);
-        match self.guard.cycle(step.status.fault.is_none()) {
+        match self.interlock.cycle(step.status.fault.is_none()) {
             Ok(()) => Output {
                 torque: step.torque,
                 stopped: None,
@@ -78,7 +78,7 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
         self.state.resume_after_gap();
         self.state.set_applied_torque(&zeros());
         // Not clean: an error whatever the emergency stop says, and the outputs safe.
-        let _ = self.guard.cycle(false);
+        let _ = self.interlock.cycle(false);
     }
 
     /// The controller.
@@ -95,6 +95,6 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> Machine<T, E, D, H> {
 
     /// Ends with safe outputs and gives the pins back.
     pub fn release(self) -> (E, D, H) {
-        self.guard.release()
+        self.interlock.release()
     }
 }

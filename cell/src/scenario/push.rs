@@ -1,12 +1,11 @@
 //! A scripted push: constant force between two linear ramps.
 
-use controller_core::joint::{JointState, JointVector, Vector3};
+use controller_core::joint::Vector3;
 use serde::Deserialize;
 
-use super::Interval;
+use super::contact::{Interval, validate_times};
+use super::point::PointSpec;
 use crate::invalid::{Invalid, in_range, positive};
-use crate::plant::PlantModel;
-use crate::scenario::PointSpec;
 
 /// Force on a point of the arm, by the clock.
 #[derive(Clone, Debug, Deserialize)]
@@ -31,7 +30,7 @@ impl Push {
     /// What cannot be used.
     pub fn validate(&self) -> Result<(), Invalid> {
         self.point.validate()?;
-        let half = super::validate_times(self.from_s, self.to_s)? / 2.0;
+        let half = validate_times(self.from_s, self.to_s)? / 2.0;
         positive("ramp_s", self.ramp_s, half)?;
         self.force_n
             .iter()
@@ -46,22 +45,6 @@ impl Push {
             to_s: self.to_s,
             ramp_s: self.ramp_s,
         }
-    }
-
-    /// Joint torque J^T F of it \[Nm\] at time `t_s` \[s\].
-    #[must_use]
-    pub fn torque(
-        &self,
-        t_s: f64,
-        plant: &PlantModel,
-        state: &JointState<f64>,
-    ) -> JointVector<f64> {
-        let force = self.force(t_s);
-        if force == Vector3::zeros() {
-            return JointVector::zeros();
-        }
-        let point = self.point.resolve();
-        plant.point_torque(&state.q, point.link.number(), &point.offset.into(), &force)
     }
 
     /// Force on the arm at time `t_s` \[N\].

@@ -24,7 +24,7 @@ pub enum Cause {
 
 /// Emergency stop and the two outputs that depend on it.
 #[derive(Debug)]
-pub struct Guard<E, D, H> {
+pub struct Interlock<E, D, H> {
     emergency_stop: E,
     drives: D,
     heartbeat: H,
@@ -32,20 +32,20 @@ pub struct Guard<E, D, H> {
     beat: bool,
 }
 
-impl<E: InputPin, D: OutputPin, H: OutputPin> Guard<E, D, H> {
+impl<E: InputPin, D: OutputPin, H: OutputPin> Interlock<E, D, H> {
     /// Both outputs safe at once. What cannot be set now is tried again every
     /// cycle.
     #[must_use]
     pub fn new(emergency_stop: E, drives: D, heartbeat: H) -> Self {
-        let mut guard = Self {
+        let mut interlock = Self {
             emergency_stop,
             drives,
             heartbeat,
             requested: false,
             beat: false,
         };
-        guard.make_safe();
-        guard
+        interlock.make_safe();
+        interlock
     }
 
     /// Asks for the drives: they run from the next good cycle on. Needed again

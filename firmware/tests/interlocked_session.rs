@@ -12,9 +12,9 @@ use controller_core::cycle::stages::StageName;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::zeros;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use firmware::guard::{Cause, Guard};
-use firmware::job::{CYCLE_S, Job, JobKind};
-use firmware::remote::{self, Event, JobSource, Remote};
+use firmware::interlock::{Cause, Interlock};
+use firmware::interlocked_session::{self, Event, FixedScenarioSource, InterlockedSession};
+use firmware::scenario::{CYCLE_S, FixedScenario, ReadyScenario};
 use fri::{Command, CommandPacket, ControlScheme, InterfaceState, Measurement, Quality};
 
 const SILENCE_S: f64 = 2.0;
@@ -91,7 +91,7 @@ impl DatagramLink for Line {
 
 /// A robot that stands still, the controller, and what came of them.
 struct Rig {
-    remote: Remote<Line, Stop, Output, Output>,
+    interlocked: InterlockedSession<Line, Stop, Output, Output>,
     measurement: Measurement,
     released: Rc<Cell<bool>>,
     journal: Journal,
@@ -99,10 +99,10 @@ struct Rig {
 
 impl Rig {
     fn new() -> Self {
-        let kind = JobKind::TwoLevel;
+        let scenario = FixedScenario::TwoLevel;
         let journal = Journal::default();
         let released = Rc::new(Cell::new(true));
-        let guard = Guard::new(
+        let interlock = Interlock::new(
             Stop(released.clone()),
             Output(journal.clone(), Entry::Drives),
             Output(journal.clone(), Entry::Heartbeat),
@@ -112,11 +112,11 @@ impl Rig {
             answer: None,
             journal: journal.clone(),
         };
-        let config = remote::config(kind).expect("a valid job");
-        let source = JobSource::new(kind).expect("a valid job");
+        let config = interlocked_session::config(scenario).expect("a valid scenario");
+        let source = FixedScenarioSource::new(scenario).expect("a valid scenario");
         Self {
-            remote: Remote::new(config, source, line, guard, SILENCE_S),
-            measurement: standing(kind),
+            interlocked: InterlockedSession::new(config, source, line, interlock, SILENCE_S),
+            measurement: standing(scenario),
             released,
             journal,
         }
@@ -125,7 +125,7 @@ impl Rig {
     /// A poll; what happened in it.
     fn poll(&mut self) -> (Event, Vec<Entry>) {
         self.journal.borrow_mut().clear();
-        let Ok(event) = self.remote.poll(CYCLE_S);
+        let Ok(event) = self.interlocked.poll(CYCLE_S);
         (event, self.journal.borrow().clone())
     }
 
@@ -135,9 +135,9 @@ impl Rig {
         header.counter = header.counter.wrapping_add(1);
         let mut bytes = [0; Measurement::LEN];
         self.measurement.emit(&mut bytes);
-        self.remote.link().coming.push_back(bytes.to_vec());
+        self.interlocked.link().coming.push_back(bytes.to_vec());
         let seen = self.poll();
-        if let Some(answer) = self.remote.link().answer.take() {
+        if let Some(answer) = self.interlocked.link().answer.take() {
             let packet = CommandPacket::new_checked(answer).expect("a good answer");
             self.measurement.header.reflected = Command::parse(&packet).header.counter;
         }
@@ -145,7 +145,7 @@ impl Rig {
     }
 
     fn phase(&self) -> Phase {
-        self.remote.session().phase()
+        self.interlocked.session().phase()
     }
 
     /// Until the arm moves.
@@ -164,9 +164,9 @@ impl Rig {
     }
 }
 
-fn standing(kind: JobKind) -> Measurement {
-    let job = Job::<f64>::new(kind).expect("a valid job");
-    let start = kind.start_deg().map(|q| q.to_radians() as f32);
+fn standing(scenario: FixedScenario) -> Measurement {
+    let ready = ReadyScenario::<f64>::new(scenario).expect("a valid scenario");
+    let start = scenario.start_deg().map(|q| q.to_radians() as f32);
     let measured = controller_core::Measurement {
         q: start.map(f64::from).into(),
         dq: zeros(),
@@ -174,10 +174,10 @@ fn standing(kind: JobKind) -> Measurement {
     };
     let input = Input {
         measurement: &measured,
-        reference: &job.origin,
+        reference: &ready.origin,
     };
     let mut data = Data::new();
-    (job.controller).evaluate_until(StageName::Dynamics, &input, &mut data);
+    (ready.controller).evaluate_until(StageName::Dynamics, &input, &mut data);
     let dynamics = data.dynamics;
     let mut measurement = Measurement {
         state: InterfaceState::Monitor,
@@ -278,7 +278,7 @@ fn a_jump_of_the_measured_position_is_safe_in_its_cycle() {
         "{event:?}"
     );
     assert!(is_safe(&journal), "{journal:?}");
-    assert!(rig.remote.session().fault().is_some());
+    assert!(rig.interlocked.session().fault().is_some());
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn what_is_no_measurement_is_refused_and_counts_as_silence() {
     rig.move_on();
     let mut refused = 0;
     let silent = (0..1100).find(|_| {
-        rig.remote.link().coming.push_back(vec![7; 100]);
+        rig.interlocked.link().coming.push_back(vec![7; 100]);
         let (event, journal) = rig.poll();
         refused += usize::from(event == Event::Refused);
         assert!(!journal.contains(&Entry::Sent));

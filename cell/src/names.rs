@@ -1,7 +1,6 @@
 //! Choices that have a name on the command line and in files.
 
 use crate::invalid::Invalid;
-use crate::plant::PlantKind;
 
 /// A closed set of named choices.
 pub trait Named: Copy + 'static {
@@ -32,6 +31,15 @@ pub trait Named: Copy + 'static {
             .find(|(_, choice)| *choice == self)
             .map_or("", |(name, _)| name)
     }
+}
+
+/// How much of a real arm the plant imitates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlantKind {
+    /// Exact model, no friction, no noise, true state measured.
+    Ideal,
+    /// Friction, mismatched masses, torque noise, encoders.
+    Realistic,
 }
 
 impl Named for PlantKind {

@@ -1,4 +1,4 @@
-//! The controller for a robot at the other end of a datagram link, with the guard
+//! The controller for a robot at the other end of a datagram link, with the interlock
 //! in between: the FRI session of the `bridge` crate without a PC.
 
 use bridge::guide::ReferenceSource;
@@ -10,8 +10,8 @@ use controller_core::law::null_space::NullDamping;
 use controller_core::{ConfigError, Reference};
 use embedded_hal::digital::{InputPin, OutputPin};
 
-use crate::guard::{Cause, Guard};
-use crate::job::{self, Job, JobKind};
+use crate::interlock::{Cause, Interlock};
+use crate::scenario::{self, FixedScenario, ReadyScenario};
 
 /// Longest datagram of the link.
 const BUFFER: usize = 1024;
@@ -22,12 +22,12 @@ const DAMPING_RATE: f64 = 10.0;
 /// Length of the motion \[s\].
 pub const DURATION_S: f64 = 20.0;
 
-/// The configuration of a session that runs a job.
+/// The configuration of a session that runs a scenario.
 ///
 /// # Errors
-/// Never for the constants of a job.
-pub fn config(kind: JobKind) -> Result<SessionConfig, ConfigError> {
-    let mut controller = job::config(kind)?;
+/// Never for the constants of a scenario.
+pub fn config(scenario: FixedScenario) -> Result<SessionConfig, ConfigError> {
+    let mut controller = scenario::config(scenario)?;
     controller.null_space.damping = NullDamping::Inertia(DAMPING_RATE);
     Ok(SessionConfig::new(
         &LWR_IV,
@@ -37,38 +37,38 @@ pub fn config(kind: JobKind) -> Result<SessionConfig, ConfigError> {
     ))
 }
 
-/// The motion of a job, from wherever the arm is.
+/// The motion of a scenario, from wherever the arm is.
 #[derive(Clone, Debug)]
-pub struct JobSource {
-    job: Job<f64>,
+pub struct FixedScenarioSource {
+    ready: ReadyScenario<f64>,
     origin: Reference<f64>,
 }
 
-impl JobSource {
-    /// Of a job.
+impl FixedScenarioSource {
+    /// Of a scenario.
     ///
     /// # Errors
-    /// Never for the constants of a job.
-    pub fn new(kind: JobKind) -> Result<Self, ConfigError> {
-        let job = Job::new(kind)?;
+    /// Never for the constants of a scenario.
+    pub fn new(scenario: FixedScenario) -> Result<Self, ConfigError> {
+        let ready = ReadyScenario::new(scenario)?;
         Ok(Self {
-            origin: Reference::hold(job.controller.level_count(), zeros()),
-            job,
+            origin: Reference::hold(ready.controller.level_count(), zeros()),
+            ready,
         })
     }
 }
 
-impl ReferenceSource for JobSource {
+impl ReferenceSource for FixedScenarioSource {
     fn start(&mut self, origin: &Reference<f64>) {
         self.origin.clone_from(origin);
     }
 
     fn sample(&mut self, t_s: f64) -> Option<Reference<f64>> {
-        Some(self.job.moved(&self.origin, t_s))
+        Some(self.ready.moved(&self.origin, t_s))
     }
 }
 
-/// What a call of [`Remote::poll`] found.
+/// What a call of [`InterlockedSession::poll`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// No datagram.
@@ -86,34 +86,34 @@ pub enum Event {
     Silent,
 }
 
-/// Session, link and guard.
-pub struct Remote<L, E, D, H> {
+/// Session, link and interlock.
+pub struct InterlockedSession<L, E, D, H> {
     session: Session,
-    source: JobSource,
+    source: FixedScenarioSource,
     link: L,
-    guard: Guard<E, D, H>,
+    interlock: Interlock<E, D, H>,
     /// Time without a datagram \[s\], from the first one on.
     quiet_s: f64,
     silence_s: f64,
     heard: bool,
 }
 
-impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H> {
+impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> InterlockedSession<L, E, D, H> {
     /// Outputs safe, waiting for the robot. After `silence_s` \[s\] without a datagram
     /// it counts as gone.
     #[must_use]
     pub fn new(
         config: SessionConfig,
-        source: JobSource,
+        source: FixedScenarioSource,
         link: L,
-        guard: Guard<E, D, H>,
+        interlock: Interlock<E, D, H>,
         silence_s: f64,
     ) -> Self {
         Self {
             session: Session::new(config),
             source,
             link,
-            guard,
+            interlock,
             quiet_s: 0.0,
             silence_s,
             heard: false,
@@ -132,7 +132,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H
     }
 
     /// Takes a datagram if one has come and answers it; `elapsed_s` \[s\] have passed
-    /// since the last call. Guard first, answer second: with an emergency stop or a
+    /// since the last call. Interlock first, answer second: with an emergency stop or a
     /// fault the outputs are safe before the datagram leaves.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H
             Ok(Some(length)) => length,
             Ok(None) => return Ok(self.quiet(elapsed_s)),
             Err(error) => {
-                self.guard.make_safe();
+                self.interlock.make_safe();
                 return Err(error);
             }
         };
@@ -158,7 +158,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H
         let stopped = self.watch().err();
         let sent = self.link.send(&answer);
         if sent.is_err() {
-            self.guard.make_safe();
+            self.interlock.make_safe();
         }
         sent.map(|()| Event::Answered {
             phase: self.session.phase(),
@@ -166,18 +166,18 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H
         })
     }
 
-    /// Guards a cycle: drives run in command state only.
+    /// Asks the interlock in a cycle: drives run in command state only.
     fn watch(&mut self) -> Result<(), Cause> {
         let phase = self.session.phase();
         let moves = phase.is_in_command() && self.session.stop_reason().is_none();
         if phase == Phase::Starting {
-            self.guard.enable();
+            self.interlock.enable();
         }
         let clean = self.session.fault().is_none();
-        let outcome = self.guard.cycle(clean);
+        let outcome = self.interlock.cycle(clean);
         match outcome {
             Err(Cause::EmergencyStop | Cause::Output) => self.session.halt(),
-            _ if !moves && phase != Phase::Stopping => self.guard.make_safe(),
+            _ if !moves && phase != Phase::Stopping => self.interlock.make_safe(),
             _ => {}
         }
         outcome
@@ -191,7 +191,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> Remote<L, E, D, H
         if self.quiet_s <= self.silence_s {
             return Event::Quiet;
         }
-        self.guard.make_safe();
+        self.interlock.make_safe();
         self.session.silent();
         Event::Silent
     }

@@ -1,4 +1,4 @@
-//! The state of the link: counters on both sides, and whether it carries a motion.
+//! The monitor of the link: counters on both sides, and whether it carries a motion.
 
 use fri::sequence::{Arrival, Receiver, Sender};
 
@@ -14,7 +14,7 @@ const RESYNC: u8 = 10;
 
 /// Counters and their gaps.
 #[derive(Clone, Debug)]
-pub(crate) struct Link {
+pub(crate) struct LinkMonitor {
     receiver: Receiver,
     sender: Sender,
     /// Datagrams in a row that were not fresh.
@@ -30,7 +30,7 @@ pub(crate) struct Link {
     pub bad_cycles: u32,
 }
 
-impl Link {
+impl LinkMonitor {
     pub const fn new() -> Self {
         Self {
             receiver: Receiver::new(),

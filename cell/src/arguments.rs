@@ -1,0 +1,4 @@
+//! The command line as both programs read it.
+
+pub mod usage;
+pub mod values;

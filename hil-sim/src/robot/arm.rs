@@ -1,0 +1,292 @@
+//! The robot: its parts, where it is, and what may be done to it besides answers.
+
+use controller_core::Target;
+use controller_core::joint::{JointMatrix, JointState, JointVector};
+use fri::{InterfaceState, Quality};
+
+use super::counters::Counters;
+use super::driving::Pipe;
+use super::figures::Event;
+use super::inbox::Inbox;
+use super::krc::Krc;
+use super::model::RobotModel;
+use super::options::RobotOptions;
+use super::rating::Rating;
+use crate::contact::{Contacts, push_torque};
+use crate::metrics::Metrics;
+use crate::plant::{Plant, PlantOptions};
+use crate::sample::{LevelProbes, Stop};
+use cell::names::PlantKind;
+use cell::scenario::{PointSpec, Push, Scenario};
+
+/// Which arm, which experiment, and how the robot behaves.
+#[derive(Clone, Debug)]
+pub struct RobotSetup {
+    /// What is to be done: start, contacts, what is judged.
+    pub scenario: Scenario,
+    /// The arm.
+    pub plant: PlantKind,
+    /// Whether the scripted contacts act.
+    pub contacts: bool,
+    /// Seed of mismatch and noise.
+    pub seed: u64,
+    /// What the plant does beyond the reference.
+    pub plant_options: PlantOptions,
+    /// The robot's behaviour.
+    pub options: RobotOptions,
+}
+
+/// A robot with its controller.
+pub struct Robot {
+    pub(super) setup: RobotSetup,
+    pub(super) cycle_s: f64,
+    pub(super) model: RobotModel,
+    pub(super) torque_limit: JointVector<f64>,
+    pub(super) speed_limit: JointVector<f64>,
+    pub(super) plant: Plant,
+    pub(super) krc: Krc,
+    pub(super) rating: Rating,
+    pub(super) inbox: Inbox,
+    pub(super) counters: Counters,
+    pub(super) pipe: Pipe,
+    pub(super) contacts: Contacts,
+    /// Pushes typed while it runs, in robot time.
+    pub(super) typed: Vec<Push>,
+    pub(super) drives_off: bool,
+    pub(super) probes: LevelProbes,
+    pub(super) metrics: Metrics,
+    /// Cycles since the first answer.
+    pub(super) cycle: u64,
+    /// The cycle of scenario time 0, and where it starts from.
+    pub(super) start: Option<Start>,
+    pub(super) seen: Option<Seen>,
+    /// Torque of the last cycle \[Nm\].
+    pub(super) applied: Option<JointVector<f64>>,
+    pub(super) stop: Option<Stop>,
+    pub(super) ended_in_monitor: bool,
+}
+
+/// Scenario time 0.
+pub(super) struct Start {
+    pub(super) cycle: u64,
+    pub(super) posture: JointVector<f64>,
+    pub(super) origins: Vec<Target<f64>>,
+}
+
+/// What the robot sees at the start of a cycle.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) truth: JointState<f64>,
+    pub(super) measured: JointState<f64>,
+    pub(super) mass_matrix: JointMatrix<f64>,
+    pub(super) gravity: JointVector<f64>,
+    /// +J^T F of all contacts \[Nm\].
+    pub(super) contact: JointVector<f64>,
+    pub(super) hand_force_n: f64,
+}
+
+impl Robot {
+    /// A robot at rest in the scenario's start posture, in monitor state.
+    #[must_use]
+    pub fn new(setup: RobotSetup) -> Self {
+        let scenario = &setup.scenario;
+        let (arm, cycle_s, q0) = (scenario.arm(), scenario.cycle_s(), scenario.start());
+        let limit = |value: fn(&controller_core::arm::LinkParameters) -> f64| {
+            JointVector::from_fn(|i, _| value(&arm.links[i]))
+        };
+        let speed_limit = limit(|link| link.speed_limit);
+        let contacts = if setup.contacts {
+            Contacts::of(scenario)
+        } else {
+            Contacts::none()
+        };
+        let own = PlantOptions {
+            dead_cycles: 0,
+            ..setup.plant_options
+        };
+        Self {
+            cycle_s,
+            model: RobotModel::new(arm),
+            torque_limit: limit(|link| link.torque_limit),
+            speed_limit,
+            plant: Plant::with_options(setup.plant, arm, q0, cycle_s, setup.seed, own),
+            krc: Krc::new(setup.options, cycle_s, &q0, &speed_limit),
+            rating: Rating::new(setup.options.rating, cycle_s),
+            inbox: Inbox::new(),
+            counters: Counters::default(),
+            pipe: Pipe::new(setup.plant_options.dead_cycles),
+            metrics: Metrics::new(
+                scenario.levels.len(),
+                &contacts.intervals(),
+                &limit(|link| link.position_limit),
+            ),
+            contacts,
+            typed: Vec::new(),
+            drives_off: false,
+            probes: LevelProbes::new(scenario),
+            cycle: 0,
+            start: None,
+            seen: None,
+            applied: None,
+            stop: None,
+            ended_in_monitor: false,
+            setup,
+        }
+    }
+
+    /// Looks at the arm, once per cycle.
+    pub(super) fn look(&mut self) -> Seen {
+        if let Some(seen) = self.seen {
+            return seen;
+        }
+        let truth = *self.plant.state();
+        let measured = self.plant.measure();
+        let (t_s, robot_t) = (self.contact_time_s(), self.robot_time_s());
+        self.contacts.take_hold(t_s, self.plant.model(), &truth);
+        let (scripted, hand_force_n) = self.contacts.joint_torque(t_s, self.plant.model(), &truth);
+        let model = self.plant.model();
+        let contact = self.typed.iter().fold(scripted, |sum, push| {
+            sum + push_torque(push, robot_t, model, &truth)
+        });
+        let seen = Seen {
+            truth,
+            measured,
+            mass_matrix: self.model.mass_matrix(&measured.q),
+            gravity: self.model.gravity(&measured.q),
+            contact,
+            hand_force_n,
+        };
+        self.seen = Some(seen);
+        seen
+    }
+
+    pub(super) fn drives_on(&self) -> bool {
+        let window = self.setup.options.drives_off_s;
+        let scripted = window.zip(self.time_s());
+        !self.drives_off && !scripted.is_some_and(|([from, to], t)| t >= from && t < to)
+    }
+
+    /// Scenario time of this cycle \[s\]; none before it has begun.
+    #[must_use]
+    pub fn time_s(&self) -> Option<f64> {
+        let start = self.start.as_ref()?;
+        let cycles = self.cycle.checked_sub(start.cycle)?;
+        Some(cycles as f64 * self.cycle_s)
+    }
+
+    /// Scenario time for contacts, where it must be a number: they have not begun
+    /// before it has.
+    pub(super) fn contact_time_s(&self) -> f64 {
+        const LONG_BEFORE: f64 = -1e6;
+        self.time_s().unwrap_or(LONG_BEFORE)
+    }
+
+    /// Time since the first answer \[s\].
+    #[must_use]
+    pub fn robot_time_s(&self) -> f64 {
+        self.cycle as f64 * self.cycle_s
+    }
+
+    /// Cycles since the first answer.
+    #[must_use]
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Whether an answer was ever accepted.
+    #[must_use]
+    pub fn has_begun(&self) -> bool {
+        self.inbox.has_begun()
+    }
+
+    /// Whether command state was never reached.
+    #[must_use]
+    pub fn has_never_commanded(&self) -> bool {
+        self.krc.entries() == 0
+    }
+
+    /// How good the link is.
+    #[must_use]
+    pub fn quality(&self) -> Quality {
+        self.rating.quality()
+    }
+
+    /// State of the link.
+    #[must_use]
+    pub fn state(&self) -> InterfaceState {
+        self.krc.state()
+    }
+
+    /// The true arm.
+    #[must_use]
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// Torque of the last cycle \[Nm\], all that the motors gave.
+    #[must_use]
+    pub fn applied_torque(&self) -> Option<&JointVector<f64>> {
+        self.applied.as_ref()
+    }
+
+    /// What happened so far.
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        self.counters.events()
+    }
+
+    /// What this robot is.
+    #[must_use]
+    pub fn setup(&self) -> &RobotSetup {
+        &self.setup
+    }
+
+    /// Whether the scenario is over, or something stopped it.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        let end = self.setup.scenario.cycles() as u64;
+        let over = self
+            .start
+            .as_ref()
+            .is_some_and(|start| self.cycle >= start.cycle + end);
+        over || self.stop.is_some()
+    }
+
+    /// Leaves command state for good; measurements say monitor from now on.
+    pub fn leave(&mut self) {
+        self.ended_in_monitor |= self.krc.state() == InterfaceState::Monitor;
+        self.krc.leave();
+    }
+
+    /// Ends the run early.
+    pub fn abort(&mut self, stop: Stop) {
+        self.stop.get_or_insert(stop);
+    }
+
+    /// Turns the drives off or on.
+    pub fn switch_drives(&mut self, on: bool) {
+        self.drives_off = !on;
+    }
+
+    /// Pushes the arm from now on for `seconds` \[s\] with `force_n` \[N\], base-plate
+    /// axes, with short ramps inside.
+    pub fn push(&mut self, point: PointSpec, force_n: [f64; 3], seconds: f64) {
+        const RAMP_S: f64 = 0.1;
+        let from_s = self.robot_time_s();
+        self.typed.push(Push {
+            point,
+            from_s,
+            to_s: from_s + seconds,
+            ramp_s: RAMP_S.min(seconds / 2.0),
+            force_n,
+        });
+    }
+
+    /// Takes all typed pushes away, with their ramps.
+    pub fn release(&mut self) {
+        let now = self.robot_time_s();
+        for push in &mut self.typed {
+            push.to_s = push.to_s.min(now + push.ramp_s);
+        }
+    }
+}

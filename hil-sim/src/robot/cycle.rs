@@ -1,0 +1,167 @@
+//! A cycle of the robot: it reports, takes answers, moves on.
+
+use controller_core::joint::JointVector;
+use fri::{InterfaceState, Measurement};
+
+use super::arm::{Robot, Seen, Start};
+use super::inbox::{self, Answer};
+use super::krc::Now;
+use super::options::{RobotAdds, cycles};
+use super::order;
+use crate::arm_points::origins;
+use crate::contact::push_torque;
+use crate::plant::Impedance;
+use crate::sample::{Stop, UnsafeMotion};
+use record::run::Sample;
+
+impl Robot {
+    /// The measurement of this cycle. Each call is a datagram of its own with the
+    /// next counter; a cycle may send several.
+    pub fn measurement(&mut self, out: &mut [u8; Measurement::LEN]) {
+        let seen = self.look();
+        if self.start.is_none() && self.krc.state() == InterfaceState::Command {
+            self.begin(&seen);
+        }
+        let header = self.inbox.next_header(self.cycle);
+        self.report(&seen, header).emit(out);
+    }
+
+    /// Command state is reported for the first time: scenario time gets its zero.
+    fn begin(&mut self, seen: &Seen) {
+        let posture = seen.measured.q.map(|angle| f64::from(angle as f32));
+        let settle = cycles(self.setup.options.settle_s, self.cycle_s);
+        self.start = Some(Start {
+            cycle: self.cycle + settle,
+            posture,
+            origins: origins(&self.setup.scenario, &posture),
+        });
+    }
+
+    /// An answer has arrived, `since_cycle_start_s` \[s\] after this cycle's
+    /// measurement. Its latency is that plus the cycles since the measurement
+    /// which it answers. One that is not accepted has no effect but on counters.
+    pub fn command(&mut self, datagram: &[u8], since_cycle_start_s: f64) -> Answer {
+        let q = self.look().measured.q;
+        let order = match order::read(datagram) {
+            Ok(order) => order,
+            Err(error) => {
+                inbox::count_error(&mut self.counters.rejected, &error);
+                return Answer::Rejected;
+            }
+        };
+        let place = match self.inbox.place(&order, &mut self.counters) {
+            Ok(place) => place,
+            Err(answer) => return answer,
+        };
+        if let Err(refusal) = self.krc.accept(&order, &q) {
+            inbox::count_refusal(&mut self.counters.rejected, refusal);
+            return Answer::Rejected;
+        }
+        let behind = self.cycle - place;
+        let latency_s = behind as f64 * self.cycle_s + since_cycle_start_s;
+        let in_time = behind == 0 && latency_s <= self.cycle_s;
+        self.inbox.accepted(place, in_time.then_some(latency_s));
+        self.counters.answer(latency_s, in_time);
+        Answer::Accepted
+    }
+
+    /// Ends the cycle: rates the link, moves the arm. What the cycle was, if
+    /// scenario time runs. Before the first answer nothing moves and no time passes.
+    pub fn advance(&mut self) -> Option<Sample> {
+        if !self.inbox.has_begun() || self.stop.is_some() {
+            return None;
+        }
+        let seen = self.look();
+        if let Some(motion) = UnsafeMotion::of(&seen.truth, &self.speed_limit) {
+            self.stop = Some(Stop::Unsafe(motion));
+            return None;
+        }
+        let state = self.krc.state();
+        self.rating.add(self.inbox.end_of_cycle());
+        let now = Now {
+            rating: &self.rating,
+            drives_on: self.drives_on(),
+            q: &seen.measured.q,
+            mass_matrix: &seen.mass_matrix,
+        };
+        let bridging = self.krc.is_bridging();
+        let driving = self.krc.cycle(&now, &mut self.pipe);
+        let bridging = bridging || self.krc.is_bridging() || self.krc.state() != state;
+        if self.rating.broken() {
+            // The client may begin anew, with any counter.
+            self.inbox.forget_counter();
+        }
+
+        let mut explicit = driving.torque + seen.gravity;
+        if self.setup.options.adds == RobotAdds::GravityCoriolis {
+            explicit += self.model.coriolis(&seen.measured, &seen.mass_matrix);
+        }
+        let motors = self.plant.motors().unwrap_or(self.plant.state());
+        let by_springs = driving.impedance.torque(motors);
+        let mut applied = explicit + by_springs;
+        let mut saturated = false;
+        for joint in 0..applied.len() {
+            let limit = self.torque_limit[joint];
+            if applied[joint].abs() > limit {
+                applied[joint] = applied[joint].clamp(-limit, limit);
+                explicit[joint] = applied[joint] - by_springs[joint];
+                saturated = true;
+            }
+        }
+        if let (Some(last), true) = (self.applied, bridging) {
+            let by_link = applied - last - self.krc.ordered_change();
+            self.counters.step = self.counters.step.max(by_link.amax());
+        }
+        self.applied = Some(applied);
+        let t_s = self.time_s();
+        self.counters
+            .cycle(state, self.rating.quality(), t_s.is_some());
+        for text in self.krc.take_messages() {
+            self.counters.event(t_s, self.robot_time_s(), text);
+        }
+
+        let residual = self
+            .krc
+            .order()
+            .map_or(JointVector::zeros(), |order| order.residual);
+        self.move_on(&explicit, &driving.impedance);
+
+        let (t_s, start) = (t_s?, self.start.as_ref()?);
+        let scenario = &self.setup.scenario;
+        let reference = scenario.reference(&start.origins, &start.posture, t_s);
+        let levels = self
+            .probes
+            .levels(self.plant.model(), &seen.truth, &reference);
+        let sample = Sample {
+            t_s,
+            state: seen.truth,
+            torque: applied,
+            residual,
+            saturated,
+            rank: false,
+            tau_ext: -seen.contact,
+            hand_force_n: seen.hand_force_n,
+            conditioning: Vec::new(),
+            levels,
+        };
+        self.metrics.add(&sample);
+        Some(sample)
+    }
+
+    /// Moves the arm to the next cycle.
+    fn move_on(&mut self, torque: &JointVector<f64>, impedance: &Impedance) {
+        let (robot_t, scenario_t) = (self.robot_time_s(), self.contact_time_s());
+        let (contacts, typed) = (&self.contacts, &self.typed);
+        self.plant
+            .advance_with(scenario_t, torque, impedance, |t, model, state| {
+                let (scripted, _) = contacts.joint_torque(t, model, state);
+                let at = robot_t + (t - scenario_t);
+                typed.iter().fold(scripted, |sum, push| {
+                    sum + push_torque(push, at, model, state)
+                })
+            });
+        self.typed.retain(|push| push.to_s > robot_t);
+        self.cycle += 1;
+        self.seen = None;
+    }
+}
