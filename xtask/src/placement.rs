@@ -18,10 +18,7 @@ const DTCM: Memory = ("DTCM", 0x2000_0000..0x2002_0000);
 /// entries of a list, so that a call of one need not be direct.
 const REQUIRED: [(&[&str], &Memory); 5] = [
     (&["stm32h743::cycle::Loop", "::run::"], &ITCM),
-    (
-        &["controller_core::cycle::controller::Controller", "::step"],
-        &ITCM,
-    ),
+    (&["controller_core::cycle::step::", "step_with"], &ITCM),
     (&["controller_core::cycle::stages::"], &ITCM),
     (&["stm32h743", "::CONTROL"], &DTCM),
     (&["_stack_start"], &DTCM),
@@ -142,7 +139,7 @@ mod tests {
 
     const GOOD: &str = "\
 00000050 t stm32h743::cycle::Loop$LT$J$GT$::run::h8b38
-00000580 t controller_core::cycle::controller::Controller$LT$T$GT$::step_with::h2800
+00000580 t controller_core::cycle::step::_$LT$impl$u20$Controller$LT$T$GT$$GT$::step_with::h2800
 00007e28 t controller_core::cycle::stages::hierarchy::h3ade
 0800f4c0 t controller_core::task::set::TaskSet::new::h6c88
 080056c4 t __Thumbv7ABSLongThunk___aeabi_memcpy8
