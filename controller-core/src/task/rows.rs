@@ -75,15 +75,15 @@ impl<T: Real> TaskRows<T> {
                             (Vector3::from([x, y, z]) - motion.x, -motion.dx, zeros())
                         }
                     };
-                    let command = Command::new(level, parts);
+                    let commanded = Commanded::new(level, parts);
                     let rows = kinematics.point_jacobian(*link, &motion);
-                    self.push(level.axes, &command, joints, &rows);
+                    self.push(level.axes, &commanded, joints, &rows);
                 }
                 LevelPoint::Orientation(link) => {
-                    let command =
-                        orientation_command(level, index, *link, target, held, kinematics);
+                    let commanded =
+                        orientation_commanded(level, index, *link, target, held, kinematics);
                     let rows = kinematics.angular_jacobian(*link);
-                    self.push(level.axes, &command, joints, &rows);
+                    self.push(level.axes, &commanded, joints, &rows);
                 }
             }
         }
@@ -94,7 +94,7 @@ impl<T: Real> TaskRows<T> {
     fn push(
         &mut self,
         axes: Axes,
-        command: &Command<T>,
+        commanded: &Commanded<T>,
         joints: &JointState<T>,
         all: &JacobianRows<T>,
     ) {
@@ -110,8 +110,8 @@ impl<T: Real> TaskRows<T> {
                 self.jacobian[place] = all.jacobian[axis];
                 self.jacobian_dot[place] = all.jacobian_dot[axis];
                 self.bias[place] = bias;
-                self.commanded[place] = command.acceleration[axis];
-                self.error[place] = command.error[axis];
+                self.commanded[place] = commanded.acceleration[axis];
+                self.error[place] = commanded.error[axis];
                 self.count = place + 1;
             }
         }
@@ -148,14 +148,14 @@ impl<T: Real> Default for TaskRows<T> {
 }
 
 /// What one level commands on all three axes.
-struct Command<T: Real> {
+struct Commanded<T: Real> {
     /// As in [`TaskRows::error`].
     error: Vector3<T>,
     /// As in [`TaskRows::commanded`].
     acceleration: Vector3<T>,
 }
 
-impl<T: Real> Command<T> {
+impl<T: Real> Commanded<T> {
     /// (12) from error, its rate and the desired acceleration.
     #[inline(always)]
     fn new(level: &Level<T>, (error, rate, desired): (Vector3<T>, Vector3<T>, Vector3<T>)) -> Self {
@@ -169,14 +169,14 @@ impl<T: Real> Command<T> {
 }
 
 #[inline(always)]
-fn orientation_command<T: Real>(
+fn orientation_commanded<T: Real>(
     level: &Level<T>,
     index: usize,
     link: Link,
     target: &Target<T>,
     held: &mut HeldPlaces<T>,
     kinematics: &Kinematics<T>,
-) -> Command<T> {
+) -> Commanded<T> {
     let motion = kinematics.link(link);
     let actual = orientation::of_rotation(&motion.rotation);
     let (desired, w, dw) = match target {
@@ -191,5 +191,5 @@ fn orientation_command<T: Real>(
         ),
     };
     let error = orientation::chord(&desired, &actual);
-    Command::new(level, (error, w - motion.angular_velocity, dw))
+    Commanded::new(level, (error, w - motion.angular_velocity, dw))
 }
