@@ -5,7 +5,7 @@ use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
 use controller_core::arm::dynamics::Dynamics;
 use controller_core::arm::kinematics::Kinematics;
-use controller_core::arm::{ArmModel, LWR_IV, LWR_IV_FLANGE};
+use controller_core::arm::{ArmModel, LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::fault::FaultKind;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::law::null_space::NullDamping;
@@ -34,7 +34,7 @@ fn config_of(tasks: &[Task], duration_s: f64) -> SessionConfig {
         tasks: TaskSet::new(tasks).expect("tasks that can be"),
         null_space: NullSpace {
             damping: NullDamping::Inertia(10.0),
-            ..NullSpace::diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2], [1.0; 7])
+            ..NullSpace::diagonal(LWR_IV_STIFFNESS, [1.0; 7])
         },
         observer_gain: [50.0; 7],
         cycle_s: 0.002,

@@ -24,7 +24,7 @@ use serde::{Deserialize, Deserializer};
 
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{MeasurementKind, Named, PlantKind};
-use level::GAIN_MAX;
+use crate::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S, GAIN_MAX};
 
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
@@ -42,12 +42,6 @@ pub const BUILT_IN: &[(&str, &str)] = &[
     ("case-2", include_str!("../scenarios/case-2.toml")),
     ("hand", include_str!("../scenarios/hand.toml")),
 ];
-
-/// Longest experiment \[s\].
-pub const DURATION_MAX_S: f64 = 3600.0;
-
-/// Shortest and longest cycle \[ms\].
-pub const CYCLE_RANGE_MS: [f64; 2] = [0.1, 20.0];
 
 /// An experiment, as in its file.
 #[derive(Clone, Debug, Deserialize)]

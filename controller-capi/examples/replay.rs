@@ -1,6 +1,6 @@
 //! The sequence of `c/replay.c` through the core in Rust: the same lines.
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
 use controller_core::{
@@ -55,10 +55,7 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
             Task::position(elbow, Axes::XY, gains),
             Task::orientation(Link::L7, Axes::Z, gains),
         ])?,
-        null_space: NullSpace::diagonal(
-            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
-            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
-        ),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,

@@ -6,7 +6,9 @@
 use core::fmt;
 use core::mem::MaybeUninit;
 
-use controller_core::arm::{ArmParameters, LWR_IV, LinkParameters};
+use controller_core::arm::{
+    ArmParameters, LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS, LinkParameters,
+};
 use controller_core::gain::diagonal;
 use controller_core::joint::DOF;
 use controller_core::law::null_space::{NullDamping, Posture};
@@ -309,8 +311,8 @@ impl Default for StratumSettings {
             level_count: 1,
             arm: StratumArm::lwr_iv(),
             levels: [flange; STRATUM_LEVELS],
-            null_stiffness: diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]),
-            null_damping: diagonal([4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03]),
+            null_stiffness: diagonal(LWR_IV_STIFFNESS),
+            null_damping: diagonal(LWR_IV_DAMPING),
             null_damping_rate: 20.0,
             damping: STRATUM_DAMPING_JOINT,
             posture: STRATUM_POSTURE_CONSTANT,

@@ -4,7 +4,7 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
 use controller_core::{
@@ -18,10 +18,7 @@ fn first_torque<T: Real>(q: [f64; 7]) -> Option<[f64; 7]> {
     let gains = TaskGains::uniform(400.0, 40.0);
     let config = ControllerConfig {
         tasks: TaskSet::new(&[Task::position(LWR_IV_FLANGE, Axes::XYZ, gains)]).ok()?,
-        null_space: NullSpace::diagonal(
-            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
-            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
-        ),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,

@@ -17,7 +17,7 @@ mod parameters;
 mod transform;
 
 pub use link::{Link, LinkPoint, NamedPoint};
-pub use lwr_iv::{LWR_IV, LWR_IV_FLANGE, LWR_IV_POINTS};
+pub use lwr_iv::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS};
 pub use model::ArmModel;
 pub(crate) use model::LinkModel;
 pub use parameters::{ArmError, ArmParameters, LinkParameters};

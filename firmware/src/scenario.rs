@@ -1,7 +1,7 @@
 //! The two scenarios that the target runs, as constants: the same as the
 //! built-in scenarios of that name, which a test checks.
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::{DOF, JointVector};
 use controller_core::real::Real;
 use controller_core::task::trajectory::{Plane, Trajectory};
@@ -97,10 +97,7 @@ pub fn config(scenario: FixedScenario) -> Result<ControllerConfig, ConfigError> 
     };
     Ok(ControllerConfig {
         tasks: TaskSet::new(tasks)?,
-        null_space: NullSpace::diagonal(
-            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
-            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
-        ),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; DOF],
         cycle_s: CYCLE_S,
         dead_cycles: 0,

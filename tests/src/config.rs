@@ -3,11 +3,9 @@
 use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
 use controller_core::{Axes, ControllerConfig, LinkPoint, NullSpace, Task, TaskGains, TaskSet};
 
-/// D \[Nms/rad\].
-pub const REFERENCE_DAMPING: [f64; 7] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
-
-/// K_q \[Nm/rad\].
-pub const REFERENCE_STIFFNESS: [f64; 7] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2];
+pub use controller_core::arm::{
+    LWR_IV_DAMPING as REFERENCE_DAMPING, LWR_IV_STIFFNESS as REFERENCE_STIFFNESS,
+};
 
 /// K_p = 400 /s2, K_d = 40 /s on every axis.
 pub const REFERENCE_GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);

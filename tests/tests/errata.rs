@@ -7,6 +7,7 @@ mod closed_loop;
 use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
 use hil_sim::plant::PlantModel;
+use stratum_tests::config::REFERENCE_DAMPING;
 use stratum_tests::controller;
 use stratum_tests::oracle::matrix::Matrix;
 use stratum_tests::oracle::sample::{SPLITS, Sample, Spec, Wish, configuration};
@@ -275,13 +276,7 @@ fn erratum_8_eq_48_lacks_the_coupling() {
 /// itself. And K [1/s] cannot be K_l,d [Nms/rad]: M K would have to equal D.
 #[test]
 fn erratum_10_eq_15_needs_a_scalar_gain() {
-    let gains = Matrix::from_fn(7, 7, |i, j| {
-        if i == j {
-            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03][i]
-        } else {
-            0.0
-        }
-    });
+    let gains = Matrix::from_fn(7, 7, |i, j| if i == j { REFERENCE_DAMPING[i] } else { 0.0 });
     let mut misses = Vec::new();
     states("3", 10, |_, oracle, _| {
         let (n, dq) = (oracle.null_projector(), &oracle.terms.dq);

@@ -4,7 +4,7 @@ use std::fmt;
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use controller_core::arm::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
 use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};
@@ -78,7 +78,7 @@ fn session() -> Session {
         tasks: TaskSet::new(&[flange]).expect("a task that can be"),
         null_space: NullSpace {
             damping: NullDamping::Inertia(10.0),
-            ..NullSpace::diagonal([20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2], [1.0; 7])
+            ..NullSpace::diagonal(LWR_IV_STIFFNESS, [1.0; 7])
         },
         observer_gain: [50.0; 7],
         cycle_s: 0.002,

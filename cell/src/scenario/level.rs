@@ -6,9 +6,7 @@ use serde::Deserialize;
 use super::point::PointSpec;
 use super::reference::ReferenceSpec;
 use crate::invalid::{Invalid, positive};
-
-/// Largest gain a file may ask for; far beyond any use, far below overflow.
-pub(super) const GAIN_MAX: f64 = 1e6;
+use crate::ranges::GAIN_MAX;
 
 /// What a level tracks.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]

@@ -6,6 +6,7 @@ use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
 use crate::invalid::{Invalid, in_range, positive};
+use crate::ranges::DURATION_MAX_S;
 
 /// Motion of a level's point about where it is at the start.
 #[derive(Clone, Debug, Deserialize)]
@@ -77,21 +78,21 @@ impl ReferenceSpec {
         match self {
             Self::Hold => Ok(()),
             Self::Move { by_m, duration_s } => {
-                positive("duration_s", *duration_s, 3600.0)?;
+                positive("duration_s", *duration_s, DURATION_MAX_S)?;
                 by_m.iter()
                     .try_for_each(|&x| in_range("by_m", x, -2.0, 2.0).map(drop))
             }
             Self::Circle(turn) | Self::Spiral(turn) => {
                 in_range("radius_m", turn.radius_m, 0.0, 2.0)?;
-                in_range("period_s", turn.period_s, 0.05, 3600.0)?;
-                in_range("growth_s", turn.growth_s, 0.05, 3600.0).map(drop)
+                in_range("period_s", turn.period_s, 0.05, DURATION_MAX_S)?;
+                in_range("growth_s", turn.growth_s, 0.05, DURATION_MAX_S).map(drop)
             }
             Self::Swing(swing) => {
                 let norm = Vector3::from(swing.axis).norm();
                 in_range("axis length", norm, 1e-3, 1e3)?;
                 in_range("angle_deg", swing.angle_deg, -350.0, 350.0)?;
-                in_range("period_s", swing.period_s, 0.05, 3600.0)?;
-                in_range("growth_s", swing.growth_s, 0.05, 3600.0).map(drop)
+                in_range("period_s", swing.period_s, 0.05, DURATION_MAX_S)?;
+                in_range("growth_s", swing.growth_s, 0.05, DURATION_MAX_S).map(drop)
             }
         }
     }

@@ -4,7 +4,9 @@
 
 pub mod stages;
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE, LWR_IV_POINTS};
+use controller_core::arm::{
+    LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS,
+};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::{
@@ -47,10 +49,7 @@ pub fn levels<T: Real>(count: usize) -> Case<T> {
     ];
     let config = ControllerConfig {
         tasks: TaskSet::new(&tasks[..count - 1]).expect("valid tasks"),
-        null_space: NullSpace::diagonal(
-            [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2],
-            [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03],
-        ),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,

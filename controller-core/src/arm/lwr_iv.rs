@@ -15,6 +15,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use crate::joint::DOF;
+
 use super::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint};
 
 /// Points of the arm that tasks and contacts name. The elbow is 0.4 m from the
@@ -60,6 +62,12 @@ pub const LWR_IV_FLANGE: LinkPoint = LinkPoint {
     link: Link::L7,
     offset: [0.0, 0.0, 0.078],
 };
+
+/// Null-space stiffness K_q \[Nm/rad\] of the reference experiments on this arm.
+pub const LWR_IV_STIFFNESS: [f64; DOF] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2];
+
+/// Null-space damping D \[Nms/rad\] of the reference experiments on this arm.
+pub const LWR_IV_DAMPING: [f64; DOF] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
 
 /// KUKA LWR IV+ without tool, mounted upright.
 pub const LWR_IV: ArmParameters = ArmParameters {

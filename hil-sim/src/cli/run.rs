@@ -17,7 +17,8 @@ use crate::summary::Summary;
 use cell::arguments::values::{dead_cycles, number, seed};
 use cell::invalid::{Invalid, in_range, positive};
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
-use cell::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use cell::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S};
+use cell::scenario::Scenario;
 use cell::terminal::{print, show, tell};
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets

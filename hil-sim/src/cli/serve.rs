@@ -17,7 +17,8 @@ use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
 use cell::arguments::values::{dead_cycles, number, peer, seed};
 use cell::invalid::{Invalid, in_range, positive};
 use cell::names::{MeasurementKind, Named, PlantKind};
-use cell::scenario::{CYCLE_RANGE_MS, DURATION_MAX_S, Scenario};
+use cell::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S};
+use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
 use record::run::Sample;
 

@@ -9,6 +9,7 @@ use std::thread;
 use crate::robot::Robot;
 use crate::sample::Stop;
 use cell::invalid::{Invalid, positive};
+use cell::ranges::DURATION_MAX_S;
 use cell::scenario::PointSpec;
 use cell::terminal::tell;
 
@@ -56,7 +57,7 @@ impl Wish {
                 let seconds = seconds
                     .parse()
                     .map_err(|_| Invalid::new("seconds", seconds, "a number"))?;
-                Self::Push(point, force, positive("seconds", seconds, 3600.0)?)
+                Self::Push(point, force, positive("seconds", seconds, DURATION_MAX_S)?)
             }
             ["release"] => Self::Release,
             ["drives", "on"] => Self::Drives(true),
