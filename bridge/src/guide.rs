@@ -298,9 +298,9 @@ fn brake(from: &Target<f64>, elapsed_s: f64, brake_s: f64) -> Target<f64> {
     }
 }
 
-/// (1 - b) of the place of rest and b of the wanted motion. Of an orientation the
-/// chord between the two is taken for their rotation vector, and its rates for angular
-/// velocity and acceleration: right where they are close, off by 4 % of the angle at 1 rad.
+/// (1 - b) of the place of rest and b of the wanted motion. Of an orientation it is the
+/// share b of the rotation between the two; its rates are right for a wanted orientation
+/// that rests, and where the two are close for one that turns.
 fn join(from: &Target<f64>, wanted: &Target<f64>, blend: [f64; 3]) -> Target<f64> {
     let [share, rate, curvature] = blend;
     let velocity = |to: &Vector3<f64>, way: Vector3<f64>| to * share + way * rate;
@@ -317,7 +317,7 @@ fn join(from: &Target<f64>, wanted: &Target<f64>, blend: [f64; 3]) -> Target<f64
             }
         }
         (Target::Orientation { q: start, .. }, Target::Orientation { q, w, dw }) => {
-            let way = orientation::chord(q, start);
+            let way = orientation::rotation_vector(&orientation::chord(q, start));
             Target::Orientation {
                 q: turned(start, &(way * share)),
                 w: velocity(w, way),

@@ -107,6 +107,30 @@ fn silence_brakes_and_the_motion_is_joined_again() {
     assert_eq!(run[3600], motion(3.6), "follows again");
 }
 
+/// A far orientation is reached without a jump: no cycle turns further than the blend's
+/// largest rate, 1.875 times the mean, and the last one ends where it is wanted.
+#[test]
+fn a_far_orientation_is_joined_without_a_jump() {
+    let times = GuideTimes::default();
+    for angle in [0.3, 1.0, 2.0, 3.0] {
+        let mut guide = Guide::new(times, &tasks());
+        let position = Target::position([-0.5, 0.0, 0.4]);
+        let at = |q: Quaternion<f64>| Reference::new([position, Target::orientation(q)], [0.0; 7]);
+        let turn = orientation::about_axis(&Vector3::from([0.0, 0.6, 0.8]), angle);
+        let wanted = at(orientation::product(&turn, &start()));
+        guide.rest(&at(start()));
+        let mut last = place(&at(start()).targets()[1]).0;
+        let fastest = 1.875 * angle * CYCLE_S / times.join_s;
+        for _ in 0..1000 {
+            let now = place(&guide.advance(Some(&wanted), CYCLE_S).targets()[1]).0;
+            assert!((now - last).norm() < 1.001 * fastest, "{angle}");
+            last = now;
+        }
+        // Rounding of an arc sine near half a turn.
+        assert!((last.norm() - angle).abs() < 1e-7, "{angle}");
+    }
+}
+
 /// One level holds while the other goes on as if nothing were, and joins again.
 #[test]
 fn a_level_that_holds_brakes_alone() {
