@@ -36,83 +36,61 @@ macro_rules! numbers {
 }
 
 macro_rules! enumerations {
+    (faults { $($fault:tt)* } limits { $($limit:tt)* }) => {
+        enumeration! {
+            /// What a fault is about, 32 to 95. The numbers are stable: they go over wires
+            /// and into logs.
+            FaultKind { $($fault)* }
+        }
+        enumeration! {
+            /// What limited or degraded a cycle whose torque is valid, 96 to 159. The
+            /// numbers are stable, as those of faults.
+            LimitKind { $($limit)* }
+        }
+    };
+}
+
+macro_rules! enumeration {
     (
-        faults { $($fault:ident = $fault_number:literal, $fault_name:literal, $fault_c:literal,
-            $fault_meaning:literal;)* }
-        limits { $($limit:ident = $limit_number:literal, $limit_name:literal, $limit_c:literal,
-            $limit_meaning:literal;)* }
+        $(#[doc = $about:literal])* $kind:ident {
+            $($variant:ident = $number:literal, $name:literal, $c_name:literal,
+                $meaning:literal;)*
+        }
     ) => {
-        /// What a fault is about. The numbers are stable: they go over wires and into logs.
+        $(#[doc = $about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
         #[non_exhaustive]
         #[repr(u8)]
-        pub enum FaultKind {
-            $(#[doc = $fault_meaning] $fault = $fault_number,)*
+        pub enum $kind {
+            $(#[doc = $meaning] $variant = $number,)*
         }
 
-        impl FaultKind {
+        impl $kind {
             /// All of them, by number.
-            pub const ALL: &[Self] = &[$(Self::$fault),*];
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// Its stable number.
+            #[must_use]
+            pub const fn number(self) -> u8 {
+                self as u8
+            }
 
             /// The name used in logs and reports.
             #[must_use]
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$fault => $fault_name,)* }
+                match self { $(Self::$variant => $name,)* }
             }
 
             /// What it means.
             #[must_use]
             pub const fn meaning(self) -> &'static str {
-                match self { $(Self::$fault => $fault_meaning,)* }
-            }
-        }
-
-        /// What limited or degraded a cycle whose torque is valid. The numbers are
-        /// stable, as those of faults.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
-        #[non_exhaustive]
-        #[repr(u8)]
-        pub enum LimitKind {
-            $(#[doc = $limit_meaning] $limit = $limit_number,)*
-        }
-
-        impl LimitKind {
-            /// All of them, by number.
-            pub const ALL: &[Self] = &[$(Self::$limit),*];
-
-            /// The name used in logs and reports.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$limit => $limit_name,)* }
-            }
-
-            /// What it means.
-            #[must_use]
-            pub const fn meaning(self) -> &'static str {
-                match self { $(Self::$limit => $limit_meaning,)* }
+                match self { $(Self::$variant => $meaning,)* }
             }
         }
     };
 }
 numbers!(enumerations);
-
-impl FaultKind {
-    /// Its stable number, 32 to 95.
-    #[must_use]
-    pub const fn number(self) -> u8 {
-        self as u8
-    }
-}
-
-impl LimitKind {
-    /// Its stable number, 96 to 159.
-    #[must_use]
-    pub const fn number(self) -> u8 {
-        self as u8
-    }
-}
 
 /// A set of up to eight indices: bit i is joint i + 1, or task row i + 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -19,7 +19,7 @@ pub struct Controller<T: Real> {
     pub(super) observer_gain: JointVector<T>,
     pub(super) cycle_s: T,
     pub(super) dead_cycles: u8,
-    pub(super) fastest_mode: DampingRate,
+    fastest_mode: DampingRate,
 }
 
 impl<T: Real> Controller<T> {
@@ -37,10 +37,14 @@ impl<T: Real> Controller<T> {
         }
     }
 
-    /// Behind a call, so that the parts are made in the place of the result and
+    /// No check. Behind a call, so that the parts are made in the place of the result and
     /// nowhere else.
     #[inline(never)]
-    fn converted(arm: &ArmModel<T>, config: &ControllerConfig, fastest_mode: DampingRate) -> Self {
+    pub(super) fn converted(
+        arm: &ArmModel<T>,
+        config: &ControllerConfig,
+        fastest_mode: DampingRate,
+    ) -> Self {
         Self {
             arm: *arm,
             levels: Levels::new(&config.tasks),

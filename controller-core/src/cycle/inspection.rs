@@ -1,14 +1,15 @@
 //! One cycle laid open, for whoever looks and does not move.
 
+use super::config::ControllerConfig;
 use super::controller::Controller;
 use super::data::{Data, Input};
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
-use crate::joint::{DOF, JointVector};
-use crate::law::null_space::{Compliance, NullSpace};
+use crate::joint::DOF;
+use crate::law::null_space::NullSpace;
 use crate::law::sampling::DampingRate;
 use crate::real::Real;
-use crate::task::{Levels, Task, TaskSet};
+use crate::task::{Task, TaskSet};
 
 /// A controller that evaluates and never steps: gains are taken as they are, what a
 /// [`Controller`] would refuse can be looked at. It has no cycle time and no fault.
@@ -29,20 +30,21 @@ impl<T: Real> Inspection<T> {
         null_space: &NullSpace,
         observer_gain: [f64; DOF],
     ) -> Result<Self, ConfigError> {
+        let arm = ArmModel::new(arm)?;
+        let config = ControllerConfig {
+            tasks: TaskSet::unvalidated(tasks)?,
+            null_space: *null_space,
+            observer_gain,
+            cycle_s: 0.0,
+            dead_cycles: 0,
+        };
+        let unknown = DampingRate {
+            rate: 0.0,
+            joint: 1,
+            posture: [0.0; DOF],
+        };
         Ok(Self {
-            controller: Controller {
-                arm: ArmModel::new(arm)?,
-                levels: Levels::new(&TaskSet::unvalidated(tasks)?),
-                compliance: Compliance::new(null_space),
-                observer_gain: JointVector::from(observer_gain.map(T::from_f64)),
-                cycle_s: T::ZERO,
-                dead_cycles: 0,
-                fastest_mode: DampingRate {
-                    rate: 0.0,
-                    joint: 1,
-                    posture: [0.0; DOF],
-                },
-            },
+            controller: Controller::converted(&arm, &config, unknown),
         })
     }
 

@@ -93,24 +93,21 @@ impl<T: Real> Reference<T> {
         posture: impl Into<JointVector<T>>,
     ) -> Self {
         const { assert!(N <= MAX_LEVELS, "more targets than a controller has levels") };
-        let mut reference = Self::hold(N, posture);
-        for (place, target) in reference.targets.iter_mut().zip(targets) {
-            *place = target;
-        }
-        reference
+        Self::filled(&targets, posture)
     }
 
     /// The same from a slice; none where it is longer than [`MAX_LEVELS`].
     #[must_use]
     pub fn from_targets(targets: &[Target<T>], posture: impl Into<JointVector<T>>) -> Option<Self> {
-        if targets.len() > MAX_LEVELS {
-            return None;
-        }
+        (targets.len() <= MAX_LEVELS).then(|| Self::filled(targets, posture))
+    }
+
+    fn filled(targets: &[Target<T>], posture: impl Into<JointVector<T>>) -> Self {
         let mut reference = Self::hold(targets.len(), posture);
         for (place, target) in reference.targets.iter_mut().zip(targets) {
             *place = *target;
         }
-        Some(reference)
+        reference
     }
 
     /// `levels` levels, at most [`MAX_LEVELS`], that hold where they are; q_d \[rad\].

@@ -99,13 +99,7 @@ impl<T: Real> Trajectory<T> {
                 period_s,
                 growth_s,
             } => {
-                let growth_rate = T::ONE / growth_s;
-                let [b, db, ddb] = quintic(t_s * growth_rate);
-                let (b, db, ddb) = (
-                    radius_m * b,
-                    radius_m * db * growth_rate,
-                    radius_m * ddb * growth_rate * growth_rate,
-                );
+                let [b, db, ddb] = grown(radius_m, growth_s, t_s);
                 let (sin, cos, omega) = phase(t_s, period_s);
                 let (spin, pull) = (b * omega, b * omega * omega);
                 let twist = (db + db) * omega;
@@ -155,13 +149,7 @@ impl<T: Real> Rotation<T> {
                 period_s,
                 growth_s,
             } => {
-                let growth_rate = T::ONE / growth_s;
-                let [b, db, ddb] = quintic(t_s * growth_rate);
-                let (b, db, ddb) = (
-                    amplitude_rad * b,
-                    amplitude_rad * db * growth_rate,
-                    amplitude_rad * ddb * growth_rate * growth_rate,
-                );
+                let [b, db, ddb] = grown(amplitude_rad, growth_s, t_s);
                 let (sin, cos, omega) = phase(t_s, period_s);
                 let spin = b * omega;
                 let swung = orientation::about_axis(&axis, b * sin);
@@ -173,6 +161,18 @@ impl<T: Real> Rotation<T> {
             }
         }
     }
+}
+
+/// `amplitude` b(t / growth_s) and its first two derivatives by time.
+#[inline(always)]
+fn grown<T: Real>(amplitude: T, growth_s: T, t_s: T) -> [T; 3] {
+    let rate = T::ONE / growth_s;
+    let [b, db, ddb] = quintic(t_s * rate);
+    [
+        amplitude * b,
+        amplitude * db * rate,
+        amplitude * ddb * rate * rate,
+    ]
 }
 
 /// Sine and cosine of 2 pi t / period, and 2 pi / period \[rad/s\]. Whole turns
