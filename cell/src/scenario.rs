@@ -334,15 +334,6 @@ impl Scenario {
         })
     }
 
-    /// When its contacts act: pushes, then hands.
-    #[must_use]
-    pub fn intervals(&self) -> Vec<Interval> {
-        let pushes = self.pushes.iter().map(Push::interval);
-        pushes
-            .chain(self.hands.iter().map(Hand::interval))
-            .collect()
-    }
-
     /// The reference at time `t_s`, from where the levels are at the start, with
     /// the posture q_d `posture` \[rad\].
     #[must_use]

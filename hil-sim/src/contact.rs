@@ -44,12 +44,6 @@ impl Contacts {
             .collect()
     }
 
-    /// Whether hands take part.
-    #[must_use]
-    pub fn has_hands(&self) -> bool {
-        !self.hands.is_empty()
-    }
-
     /// At a cycle instant: hands whose time has come take hold where the point is.
     pub fn take_hold(&mut self, t_s: f64, plant: &PlantModel, state: &JointState<f64>) {
         for (hand, origin) in &mut self.hands {
@@ -72,10 +66,7 @@ impl Contacts {
         let mut torque = JointVector::zeros();
         let mut hand_force = 0.0f64;
         for push in &self.pushes {
-            // A sum with zero would turn a negative zero.
-            if push.force(t_s) != Vector3::zeros() {
-                torque += push_torque(push, t_s, plant, state);
-            }
+            torque += push_torque(push, t_s, plant, state);
         }
         for (hand, origin) in &self.hands {
             let Some(origin) = *origin else { continue };

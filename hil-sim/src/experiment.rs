@@ -11,11 +11,11 @@ use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, LawGains, SplitDemand};
 use crate::loopback::{self, BridgeClient};
-use crate::metrics::{FaultCounts, Metrics};
+use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
 use crate::robot::{Robot, RobotOptions, RobotSetup};
 use crate::sample::{LevelProbes, Stop, UnsafeMotion};
-use crate::summary::{self, Conditions, Summary, Verdict};
+use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind};
 use cell::scenario::Scenario;
@@ -212,49 +212,19 @@ impl Experiment {
                 progress(cycle as f64 / cycles as f64);
             }
         }
-        Ok(self.summary(&metrics, &contacts, stop))
+        Ok(self.summary(&metrics, stop.as_ref()))
     }
 
-    fn summary(&self, metrics: &Metrics, contacts: &Contacts, stop: Option<Stop>) -> Summary {
-        let scenario = &self.scenario;
-        let levels = metrics.levels(&scenario.levels);
+    fn summary(&self, metrics: &Metrics, stop: Option<&Stop>) -> Summary {
         let conditions = Conditions {
             plant: self.plant,
             contacts: self.contacts,
             measurement: self.measurement,
             dead_cycles: self.options.dead_cycles,
         };
-        let acceptance = summary::judge(scenario, &conditions, &levels);
-        let mut faults = FaultCounts::default();
-        let (verdict, reason) = match stop {
-            None => summary::verdict(&acceptance),
-            Some(stop) => {
-                if let Stop::Fault(fault) = &stop {
-                    faults.add(fault.kind);
-                }
-                (Verdict::Stopped, Some(stop.to_string()))
-            }
-        };
         Summary {
-            scenario: scenario.name.clone(),
             controller: self.controller.name(),
-            plant: self.plant.name(),
-            contacts: self.contacts,
-            seed: self.seed,
-            cycle_ms: scenario.cycle_ms,
-            duration_s: scenario.duration_s,
-            cycles: metrics.cycles(),
-            verdict,
-            reason,
-            acceptance,
-            levels,
-            residual: metrics.residual(),
-            torque: metrics.torque(),
-            joints: metrics.joints(),
-            hand_force_max_n: contacts.has_hands().then(|| metrics.hand_force()),
-            limits: metrics.limits(),
-            faults,
-            link: None,
+            ..Summary::of(&self.scenario, &conditions, self.seed, metrics, stop)
         }
     }
 }

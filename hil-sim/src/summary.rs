@@ -5,9 +5,11 @@ use serde::Serialize;
 use cell::scenario::{Metric, Scenario};
 
 use crate::metrics::{
-    self, FaultCounts, JointFigures, LevelFigures, LimitCounts, ResidualFigures, TorqueFigures,
+    self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
+    TorqueFigures,
 };
 use crate::robot::LinkFigures;
+use crate::sample::Stop;
 use cell::names::{MeasurementKind, Named, PlantKind};
 
 /// Outcome of a run.
@@ -90,6 +92,52 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// What the figures say of a run of `scenario`, of a client on the robot link; a
+    /// `stop` stands above every limit.
+    #[must_use]
+    pub fn of(
+        scenario: &Scenario,
+        conditions: &Conditions,
+        seed: u64,
+        metrics: &Metrics,
+        stop: Option<&Stop>,
+    ) -> Self {
+        let levels = metrics.levels(&scenario.levels);
+        let acceptance = judge(scenario, conditions, &levels);
+        let mut faults = FaultCounts::default();
+        let (verdict, reason) = match stop {
+            None => verdict(&acceptance),
+            Some(stop) => {
+                if let Stop::Fault(fault) = stop {
+                    faults.add(fault.kind);
+                }
+                (Verdict::Stopped, Some(stop.to_string()))
+            }
+        };
+        let has_hands = conditions.contacts && !scenario.hands.is_empty();
+        Self {
+            scenario: scenario.name.clone(),
+            controller: CLIENT,
+            plant: conditions.plant.name(),
+            contacts: conditions.contacts,
+            seed,
+            cycle_ms: scenario.cycle_ms,
+            duration_s: scenario.duration_s,
+            cycles: metrics.cycles(),
+            verdict,
+            reason,
+            acceptance,
+            levels,
+            residual: metrics.residual(),
+            torque: metrics.torque(),
+            joints: metrics.joints(),
+            hand_force_max_n: has_hands.then(|| metrics.hand_force()),
+            limits: metrics.limits(),
+            faults,
+            link: None,
+        }
+    }
+
     /// The verdict in a word for people: a run that no limit was held against is no
     /// pass, though it exits like one.
     #[must_use]
@@ -118,12 +166,7 @@ pub struct Conditions {
 
 /// Holds the figures against the limits that the scenario sets for these
 /// conditions.
-#[must_use]
-pub fn judge(
-    scenario: &Scenario,
-    conditions: &Conditions,
-    levels: &[LevelFigures],
-) -> Vec<Acceptance> {
+fn judge(scenario: &Scenario, conditions: &Conditions, levels: &[LevelFigures]) -> Vec<Acceptance> {
     let applies = scenario.limits.iter().filter(|limit| {
         PlantKind::from_name(&limit.plant) == Ok(conditions.plant)
             && limit.contacts == conditions.contacts
@@ -145,8 +188,7 @@ pub fn judge(
 }
 
 /// Verdict and reason of a run that safety did not stop.
-#[must_use]
-pub fn verdict(acceptance: &[Acceptance]) -> (Verdict, Option<String>) {
+fn verdict(acceptance: &[Acceptance]) -> (Verdict, Option<String>) {
     let failed = acceptance.iter().filter(|limit| limit.pass == Some(false));
     let reasons: Vec<_> = failed
         .map(|limit| {

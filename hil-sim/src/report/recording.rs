@@ -10,6 +10,7 @@ use controller_core::joint::JointState;
 use record::channel::{Channel, Value};
 use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
+use crate::contact::Contacts;
 use crate::plant::PlantModel;
 
 /// Most rows that are kept.
@@ -285,7 +286,7 @@ fn block_len(cycles: usize) -> usize {
 /// Start, and before each contact's force ramps down; evenly spread without.
 fn snapshot_times(scenario: &Scenario, contacts: bool) -> Vec<f64> {
     let mut times = vec![0.0];
-    let intervals = scenario.intervals();
+    let intervals = Contacts::of(scenario).intervals();
     if contacts && !intervals.is_empty() {
         times.extend(intervals.iter().map(|c| c.to_s - c.ramp_s));
     } else {
