@@ -155,27 +155,10 @@ fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, re
 
 #[cfg(test)]
 mod tests {
+    use super::setpoint::tests::three;
     use super::*;
-    use controller_core::arm::LWR_IV_FLANGE;
+    use controller_core::Target;
     use controller_core::joint::Vector3;
-    use controller_core::{Axes, Link, LinkPoint, Target, Task, TaskGains};
-
-    const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
-    const FLANGE: Task = Task::position(LWR_IV_FLANGE, Axes::XYZ, GAINS);
-    const LINK_7: Task = Task::orientation(Link::L7, Axes::XYZ, GAINS);
-    const HEIGHT: Task = Task::position(
-        LinkPoint {
-            link: Link::L3,
-            offset: [0.0, 0.1, 0.0],
-        },
-        Axes::Z,
-        GAINS,
-    );
-
-    /// Flange, orientation of link 7, and a point of link 3.
-    fn three() -> TaskSet {
-        TaskSet::new(&[FLANGE, LINK_7, HEIGHT]).expect("tasks that can be")
-    }
 
     fn origin() -> Reference<f64> {
         Reference::new(

@@ -203,7 +203,7 @@ impl fmt::Display for Level<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
     use controller_core::{Axes, Link, LinkPoint, TaskGains};
@@ -225,7 +225,7 @@ mod tests {
     }
 
     /// Flange, orientation of link 7, and a point of link 3.
-    fn three() -> TaskSet {
+    pub fn three() -> TaskSet {
         set(&[FLANGE, LINK_7, HEIGHT])
     }
 
