@@ -194,10 +194,17 @@ fn jbar_dot_dq(data: &Data<f64>) -> [f64; MAX_ROWS] {
     bias
 }
 
-/// tau = M (sum of (J_i N)^# (b_i - J_i sum ddq_j) - N K dq) + C dq + g.
+/// (8) with the null space of (13), (14), dq_d = 0, for the stack J of all levels and
+/// P = 1 - J^# J:
 ///
-/// The hierarchy of Moore-Penrose inverses is the same row-ordered
-/// factorisation, of J instead of J L^-T.
+/// ```text
+/// ddq = sum of (J_i P_i-1)^# (b_i - J_i sum ddq_j) - P K dq - P (dP/dt) dq
+/// tau = M ddq + C dq + g
+/// ```
+///
+/// P J^# = 0 leaves of the last term P (dJ/dt)^T (J J^T)^-1 J dq. The hierarchy of
+/// Moore-Penrose inverses is the same row-ordered factorisation, of J = R Q_t instead of
+/// J L^-T, so (J J^T)^-1 J dq = R^-T Q_t dq.
 fn acceleration_level(
     data: &Data<f64>,
     gains: &LawGains,
@@ -205,11 +212,12 @@ fn acceleration_level(
 ) -> SplitDemand {
     let mut hierarchy = Hierarchy::new();
     hierarchy.update(&data.rows, &Cholesky::identity());
+    let dq = &data.joints.dq;
     let tasks = hierarchy.solve(&data.rows.acceleration());
-    let braking = -gains.rate.component_mul(&data.joints.dq);
-    let null = hierarchy.null_part(&hierarchy.rotate(&braking));
+    let turning = hierarchy.solve_transposed(&hierarchy.rotate(dq));
+    let free = data.rows.rate_transposed_times(&turning) - gains.rate.component_mul(dq);
     SplitDemand {
-        coordinates: tasks + null,
+        coordinates: hierarchy.joined(&tasks, &hierarchy.rotate(&free)),
         hierarchy,
         accelerations: true,
         compensation,

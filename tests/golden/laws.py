@@ -156,15 +156,29 @@ def hierarchical(m, c, g, levels, state, residual, rates=None, stiffness_sign=1.
     return m @ ddq + compensation + free.T @ force + c @ dq + g, compensation, free
 
 
-def acceleration_level(m, c, g, levels, state):
-    """(7)-(9), (12)-(14): Moore-Penrose inverses, level by level."""
+def projector_rate(model, data, arm, state):
+    """dP/dt of the stack of all levels, P = 1 - J^# J, by differences along the motion."""
+
+    def projector(shift):
+        moved = dict(state, q=np.array(state["q"]) + shift * np.array(state["dq"]))
+        _, _, _, levels = terms(model, data, arm, moved)
+        stack = np.vstack([level["j"] for level in levels])
+        return np.eye(DOF) - np.linalg.pinv(stack) @ stack
+
+    ahead, behind, far_ahead, far_behind = (projector(k * STEP) for k in (1, -1, 2, -2))
+    return (8.0 * (ahead - behind) - (far_ahead - far_behind)) / (12.0 * STEP)
+
+
+def acceleration_level(m, c, g, levels, state, rate):
+    """(7)-(9), (12)-(14): Moore-Penrose inverses, level by level; `rate` is dP/dt of
+    (13), dq_d = 0."""
     dq = np.array(state["dq"])
     ddq, free = np.zeros(DOF), np.eye(DOF)
     for level in levels:
         inverse = np.linalg.pinv(level["j"] @ free)
         ddq = ddq + inverse @ (level["command"] - level["jdot"] @ dq - level["j"] @ ddq)
         free = free - inverse @ (level["j"] @ free)
-    ddq = ddq - free @ (np.array(state["null_space"]["rate_gain"]) * dq)
+    ddq = ddq - free @ (np.array(state["null_space"]["rate_gain"]) * dq + rate @ dq)
     return m @ ddq + c @ dq + g
 
 
@@ -188,7 +202,8 @@ def expected(model, data, arm, state):
     )
     if law.startswith("acceleration-level"):
         compensation = -residual if law.endswith("estimate") else np.zeros(DOF)
-        torque = acceleration_level(m, c, g, levels, state) + compensation
+        rate = projector_rate(model, data, arm, state)
+        torque = acceleration_level(m, c, g, levels, state, rate) + compensation
     limit = column(arm, "torque_limit")
     return {
         "mass_matrix": m,

@@ -47,11 +47,7 @@ impl<T: Real> Control<T> {
         motion: &MotionSplit<T>,
         posture_error: &JointVector<T>,
     ) {
-        let mut transport: JointVector<T> = zeros();
-        let momenta = rows.jacobian_dot.iter().zip(&motion.task_momentum);
-        for (row, &momentum) in momenta.take(rows.count()) {
-            transport += row * momentum;
-        }
+        let transport = rows.rate_transposed_times(&motion.task_momentum);
         self.task_acceleration = hierarchy.solve(&rows.acceleration());
         self.null_force = transport
             - dynamics.coriolis

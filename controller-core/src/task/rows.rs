@@ -139,6 +139,18 @@ impl<T: Real> TaskRows<T> {
         }
         b
     }
+
+    /// (dJ/dt)^T F for one entry per row of `momentum` F: \[Nm\] for task momenta.
+    #[must_use]
+    #[inline]
+    pub fn rate_transposed_times(&self, momentum: &[T; MAX_ROWS]) -> JointVector<T> {
+        let mut transport: JointVector<T> = zeros();
+        let rows = self.jacobian_dot.iter().zip(momentum);
+        for (row, &momentum) in rows.take(self.count()) {
+            transport += row * momentum;
+        }
+        transport
+    }
 }
 
 impl<T: Real> Default for TaskRows<T> {
