@@ -11,7 +11,7 @@ pub mod observer;
 pub mod record;
 pub mod stages;
 mod step;
-mod usable;
+pub(crate) mod usable;
 pub mod velocity;
 
 pub use controller::Controller;

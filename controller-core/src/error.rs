@@ -98,6 +98,13 @@ pub enum ConfigError {
         /// Its gain \[1/s\].
         value: f64,
     },
+    /// The gain of a resolver is not above 0, or more than the cycle carries.
+    ResolverGain {
+        /// The gain \[1/s\].
+        value: f64,
+        /// Its largest value \[1/s\].
+        bound: f64,
+    },
     /// The nominal cycle is outside [`CYCLE_RANGE_S`].
     Cycle {
         /// The cycle \[s\].
@@ -184,6 +191,10 @@ impl fmt::Display for ConfigError {
                 f,
                 "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
                  {GAIN_MAX:e}"
+            ),
+            Self::ResolverGain { value, bound } => write!(
+                f,
+                "resolver gain {value} 1/s; it must be above 0 and at most {bound}"
             ),
             Self::Cycle { value } => {
                 let [min, max] = CYCLE_RANGE_S;

@@ -145,6 +145,8 @@ pub enum Quantity {
     TargetCount,
     /// The demanded torque of a joint \[Nm\].
     Torque,
+    /// The speed that a resolver demands of a joint \[rad/s\].
+    SpeedCommand,
 }
 
 /// A position, as value of [`Quantity::TargetKind`].
@@ -165,6 +167,7 @@ impl Quantity {
             Self::PostureReference => "desired posture [rad] of joint",
             Self::TargetCount => "number of targets",
             Self::Torque => "demanded torque [Nm] of joint",
+            Self::SpeedCommand => "demanded speed [rad/s] of joint",
         }
     }
 }

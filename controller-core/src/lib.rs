@@ -61,6 +61,7 @@
 //! - [`cycle`]: measurement, observer, the list of stages
 //!   ([`Controller::STAGES`]), every result as [`cycle::Data`], the recorder of the last
 //!   cycles, joint speeds for robots that report positions only.
+//! - [`resolver`]: the same priorities on velocity level, for robots that take positions.
 //!
 //! Numbers in brackets are equations of Karami, Sadeghian, Keshmiri, Oriolo,
 //! Mechatronics 55 (2018) 171-179. SI units, positions in the base-plate frame
@@ -85,6 +86,7 @@ pub mod law;
 pub mod linalg;
 pub mod ranges;
 pub mod real;
+pub mod resolver;
 pub mod task;
 
 pub use nalgebra;

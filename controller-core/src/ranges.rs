@@ -35,3 +35,10 @@ pub const INTERVAL_FACTORS: [f64; 2] = [0.5, 20.0];
 
 /// Norms between which a desired orientation is believed to be a quaternion.
 pub const QUATERNION_NORMS: [f64; 2] = [0.5, 2.0];
+
+/// Largest h K of a resolver: the error of a level shrinks without changing its sign.
+pub const RESOLVER_GAIN_BOUND: f64 = 1.0;
+
+/// How far a position command of a resolver may be from the arm \[rad\]: an arm that does
+/// not follow is not wound up.
+pub const COMMAND_LEAD_MAX: f64 = 0.1;

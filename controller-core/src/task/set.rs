@@ -231,6 +231,24 @@ impl<T: Real> Levels<T> {
         levels
     }
 
+    /// The same levels with K_p = `stiffness` \[1/s2\] and K_d = `damping` \[1/s\] on every
+    /// axis that they control.
+    pub fn with_gains(mut self, stiffness: T, damping: T) -> Self {
+        for level in &mut self.levels {
+            let uniform = |gain: T| {
+                Matrix3::from_fn(|i, j| {
+                    if i == j && level.axes.contains(i) {
+                        gain
+                    } else {
+                        T::ZERO
+                    }
+                })
+            };
+            (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
+        }
+        self
+    }
+
     #[inline(always)]
     pub fn as_slice(&self) -> &[Level<T>] {
         self.levels.get(..self.count).unwrap_or(&[])
