@@ -7,11 +7,12 @@ mod cases;
 use std::hint::black_box;
 use std::time::Duration;
 
-use cases::stages::{stage, step};
+use cases::stages::{resolve, stage, step};
 use cases::{Case, levels, states};
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::{Data, Input};
 use controller_core::real::Real;
+use controller_core::resolver::ResolverState;
 use controller_core::{Controller, State};
 use criterion::Criterion;
 
@@ -41,6 +42,23 @@ fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
     assert!(state.fault().is_none(), "a cycle ended in a fault");
 }
 
+/// The velocity-level resolver on its own.
+fn resolver<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
+    let (measurement, reference) = case.typed(&states()[0]);
+    let mut state = ResolverState::new(measurement.q);
+    criterion.bench_function(&format!("{} resolver", case.name), |bencher| {
+        bencher.iter(|| {
+            resolve(
+                black_box(&case.resolver),
+                &mut state,
+                &measurement,
+                &reference,
+            )
+        });
+    });
+    assert!(state.fault().is_none(), "a cycle ended in a fault");
+}
+
 /// Every stage alone, in one state: its work does not depend on the data.
 fn stages<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
     let (measurement, reference) = case.typed(&states()[0]);
@@ -60,7 +78,7 @@ fn stages<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
 }
 
 fn main() {
-    // Half a second and two for each of 26 figures: about a minute in all.
+    // Half a second and two for each of 32 figures: about a minute in all.
     let mut criterion = Criterion::default()
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2))
@@ -69,6 +87,8 @@ fn main() {
     cycle(&mut criterion, &levels::<f64>(3));
     cycle(&mut criterion, &levels::<f32>(2));
     cycle(&mut criterion, &levels::<f32>(3));
+    resolver(&mut criterion, &levels::<f64>(3));
+    resolver(&mut criterion, &levels::<f32>(3));
     stages(&mut criterion, &levels::<f64>(3));
     stages(&mut criterion, &levels::<f32>(3));
     criterion.final_summary();

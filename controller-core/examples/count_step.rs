@@ -2,8 +2,8 @@
 //! under callgrind, which counts each call of a function in `cases::stages` by itself.
 //!
 //! `count_step step` runs whole cycles in random and adversarial states (`quick`: a
-//! few), `count_step stages` every stage alone. The order of the
-//! calls is printed, one name per line.
+//! few), `count_step stages` every stage alone, `count_step resolver` the velocity-level
+//! resolver in the states of `step`. The order of the calls is printed, one name per line.
 
 #![cfg(not(target_os = "none"))]
 
@@ -12,11 +12,12 @@ mod cases;
 
 use std::hint::black_box;
 
-use cases::stages::{stage, step};
+use cases::stages::{resolve, stage, step};
 use cases::{Case, Input, levels, states};
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::{self, Data};
 use controller_core::real::Real;
+use controller_core::resolver::ResolverState;
 use controller_core::{Controller, State};
 
 /// Whole cycles: each state is preceded by one that is not counted apart, so that
@@ -69,6 +70,22 @@ fn stages<T: Real>(case: &Case<T>, inputs: &[Input]) {
     }
 }
 
+fn resolutions<T: Real>(case: &Case<T>, inputs: &[Input]) {
+    for input in inputs {
+        let (measurement, reference) = case.typed(input);
+        let mut state = ResolverState::new(measurement.q);
+        let resolution = resolve(
+            black_box(&case.resolver),
+            black_box(&mut state),
+            black_box(&measurement),
+            black_box(&reference),
+        );
+        let fault = resolution.status.fault.is_some();
+        println!("{} {}", case.name, if fault { "fault" } else { "resolver" });
+        black_box(resolution);
+    }
+}
+
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
     if wanted == "stages" {
@@ -77,6 +94,12 @@ fn main() {
         stages(&levels::<f64>(3), inputs);
         stages(&levels::<f32>(2), inputs);
         stages(&levels::<f32>(3), inputs);
+    } else if wanted == "resolver" {
+        let inputs = states();
+        resolutions(&levels::<f64>(2), &inputs);
+        resolutions(&levels::<f64>(3), &inputs);
+        resolutions(&levels::<f32>(2), &inputs);
+        resolutions(&levels::<f32>(3), &inputs);
     } else {
         let mut inputs = states();
         if wanted == "quick" {

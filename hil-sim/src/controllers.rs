@@ -12,9 +12,42 @@ use controller_core::ranges::MAX_ROWS;
 
 use cell::names::Named;
 
-/// A torque law by name.
+/// What controls the arm of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ControllerKind {
+    /// A torque law.
+    Torque(TorqueLaw),
+    /// Velocity-level priorities (1)-(5) above the robot's own position controller.
+    VelocityLevel,
+}
+
+impl From<TorqueLaw> for ControllerKind {
+    fn from(law: TorqueLaw) -> Self {
+        Self::Torque(law)
+    }
+}
+
+impl Named for ControllerKind {
+    const THING: &'static str = "controller";
+    const ALL: &'static [(&'static str, Self)] = &[
+        named(0),
+        named(1),
+        named(2),
+        named(3),
+        named(4),
+        named(5),
+        ("velocity-level", Self::VelocityLevel),
+    ];
+}
+
+const fn named(index: usize) -> (&'static str, ControllerKind) {
+    let (name, law) = TorqueLaw::ALL[index];
+    (name, ControllerKind::Torque(law))
+}
+
+/// A torque law by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TorqueLaw {
     /// The product: strict priorities, compliant null space, residual
     /// compensated on the tasks.
     Hierarchical,
@@ -33,7 +66,7 @@ pub enum ControllerKind {
     AccelerationLevelEstimate,
 }
 
-impl Named for ControllerKind {
+impl Named for TorqueLaw {
     const THING: &'static str = "controller";
     const ALL: &'static [(&'static str, Self)] = &[
         ("hierarchical", Self::Hierarchical),
@@ -99,7 +132,7 @@ impl SplitDemand {
     }
 }
 
-impl ControllerKind {
+impl TorqueLaw {
     /// What this law decides.
     #[must_use]
     pub fn decide(self, data: &Data<f64>, gains: &LawGains) -> SplitDemand {

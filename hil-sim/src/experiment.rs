@@ -1,25 +1,28 @@
 //! One run: plant, controller and contacts in lock-step, in this process.
 
+mod driver;
+
 use std::io;
 
 use bridge::session::SessionConfig;
-use controller_core::cycle::Data;
-use controller_core::joint::{JointState, JointVector};
-use controller_core::{Controller, Measurement, State};
+use controller_core::joint::JointState;
+use controller_core::{Controller, Measurement};
 
 use crate::arm_points::origins;
 use crate::contact::Contacts;
-use crate::controllers::{ControllerKind, LawGains, SplitDemand};
+use crate::controllers::ControllerKind;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
-use crate::robot::{Robot, RobotOptions, RobotSetup};
+use crate::robot::{Driving, Robot, RobotOptions, RobotSetup};
 use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind};
 use cell::scenario::Scenario;
 use record::run::Sample;
+
+use driver::{Driver, PositionDriver, TorqueDriver};
 
 /// A scenario and the choices that a run adds to it.
 #[derive(Clone, Debug)]
@@ -40,26 +43,6 @@ pub struct Experiment {
     pub seed: u64,
     /// What the plant does beyond the reference.
     pub options: PlantOptions,
-}
-
-/// What the control cycle knew beyond its result.
-#[derive(Default)]
-struct PriorityView {
-    conditioning: Vec<f64>,
-    /// Torque asked for below each level \[Nm\].
-    below: Vec<JointVector<f64>>,
-}
-
-impl PriorityView {
-    fn new(data: &Data<f64>, decision: &SplitDemand) -> Self {
-        let hierarchy = &data.hierarchy;
-        Self {
-            conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
-            below: (0..hierarchy.levels())
-                .map(|level| decision.below(&data.dynamics, level))
-                .collect(),
-        }
-    }
 }
 
 impl Experiment {
@@ -140,9 +123,14 @@ impl Experiment {
         };
         let probes = LevelProbes::new(scenario);
         let origins = origins(scenario, &scenario.start());
-        let gains = LawGains {
-            rate: JointVector::repeat(scenario.null_space.rate_gain),
-            stiffness: controller.compliance().stiffness,
+        let mut driver = match self.controller {
+            ControllerKind::Torque(law) => {
+                Driver::Torque(Box::new(TorqueDriver::new(controller, law, scenario)))
+            }
+            ControllerKind::VelocityLevel => {
+                let driver = PositionDriver::new(scenario, self.options.dead_cycles);
+                Driver::Position(Box::new(driver.map_err(io::Error::other)?))
+            }
         };
         let mut plant = Plant::with_options(
             self.plant,
@@ -150,9 +138,8 @@ impl Experiment {
             scenario.start(),
             cycle_s,
             self.seed,
-            self.options,
+            driver.plant_options(self.options),
         );
-        let mut state = State::new();
         let limits = controller.arm().position_limit();
         let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
         let mut stop = None;
@@ -171,13 +158,9 @@ impl Experiment {
                 interval_s: cycle_s,
             };
             let reference = scenario.reference(&origins, &scenario.start(), t_s);
-            let mut view = PriorityView::default();
-            let step = controller.step_with(&mut state, &measurement, &reference, |_, _, data| {
-                let decision = self.controller.decide(data, &gains);
-                view = PriorityView::new(data, &decision);
-                data.demand = decision.demand(&data.dynamics);
-            });
-            stop = step.status.fault.map(Stop::Fault);
+            let motors = *plant.motors().unwrap_or(&truth);
+            let decision = driver.decide(&measurement, &reference, &motors);
+            stop = decision.fault.map(Stop::Fault);
             if stop.is_some() {
                 break;
             }
@@ -185,7 +168,8 @@ impl Experiment {
             contacts.take_hold(t_s, plant.model(), &truth);
             let (contact_torque, hand_force_n) = contacts.joint_torque(t_s, plant.model(), &truth);
             let mut levels = probes.levels(plant.model(), &truth, &reference);
-            let lower = view.below.iter().map(|below| (below, &step.torque));
+            let lower = decision.view.below.iter();
+            let lower = lower.map(|below| (below, &decision.torque));
             for (level, (probe, (below, torque))) in
                 levels.iter_mut().zip(probes.0.iter().zip(lower))
             {
@@ -194,18 +178,19 @@ impl Experiment {
             let sample = Sample {
                 t_s,
                 state: truth,
-                torque: step.torque,
-                residual: step.residual,
-                saturated: step.status.saturated.any(),
-                rank: step.status.rank.any(),
+                torque: decision.torque,
+                residual: decision.residual,
+                saturated: decision.saturated,
+                rank: decision.rank,
                 tau_ext: -contact_torque,
                 hand_force_n,
-                conditioning: view.conditioning,
+                conditioning: decision.view.conditioning,
                 levels,
             };
             metrics.add(&sample);
             sink(&sample)?;
-            plant.advance(t_s, &step.torque, |t, model, state| {
+            let Driving { torque, impedance } = &decision.driving;
+            plant.advance_with(t_s, torque, impedance, |t, model, state| {
                 contacts.joint_torque(t, model, state).0
             });
             if cycle % 512 == 0 {

@@ -5,7 +5,7 @@ use cell::names::PlantKind;
 use cell::names::{MeasurementKind, NullStiffness};
 use cell::scenario::Scenario;
 use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
-use hil_sim::controllers::ControllerKind;
+use hil_sim::controllers::TorqueLaw;
 use hil_sim::experiment::Experiment;
 use hil_sim::plant::{PlantModel, PlantOptions};
 use hil_sim::summary::Summary;
@@ -71,7 +71,7 @@ fn run(scenario: Scenario, plant: PlantKind) -> (Summary, Vec<Row>) {
         scenario,
         plant,
         contacts: false,
-        controller: ControllerKind::Hierarchical,
+        controller: TorqueLaw::Hierarchical.into(),
         null_stiffness: NullStiffness::Normal,
         measurement: MeasurementKind::Direct,
         seed: 1,

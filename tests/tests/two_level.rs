@@ -3,7 +3,7 @@
 
 use cell::names::{MeasurementKind, NullStiffness, PlantKind};
 use cell::scenario::Scenario;
-use hil_sim::controllers::ControllerKind;
+use hil_sim::controllers::{ControllerKind, TorqueLaw};
 use hil_sim::experiment::Experiment;
 use hil_sim::plant::PlantOptions;
 use hil_sim::summary::{Summary, Verdict};
@@ -12,14 +12,14 @@ use hil_sim::trace::Trace;
 fn run(
     plant: PlantKind,
     contacts: bool,
-    controller: ControllerKind,
+    controller: impl Into<ControllerKind>,
     seed: u64,
 ) -> (Summary, Vec<u8>) {
     let experiment = Experiment {
         scenario: Scenario::find("two-level").expect("built in"),
         plant,
         contacts,
-        controller,
+        controller: controller.into(),
         null_stiffness: NullStiffness::Normal,
         measurement: MeasurementKind::Direct,
         seed,
@@ -43,12 +43,12 @@ fn max(summary: &Summary) -> f64 {
 
 #[test]
 fn the_ideal_arm_keeps_the_circle_and_its_pushes_leave_no_trace() {
-    let free = run(PlantKind::Ideal, false, ControllerKind::Hierarchical, 1).0;
+    let free = run(PlantKind::Ideal, false, TorqueLaw::Hierarchical, 1).0;
     assert!(rms(&free) < 0.001 && max(&free) < 0.003, "{free:?}");
     assert_eq!(free.verdict, Verdict::Pass);
     assert_eq!(free.levels[0].rms_inside_mm, None);
 
-    let pushed = run(PlantKind::Ideal, true, ControllerKind::Hierarchical, 1).0;
+    let pushed = run(PlantKind::Ideal, true, TorqueLaw::Hierarchical, 1).0;
     let plateau = pushed.levels[0].worst_plateau().expect("contacts");
     assert!(plateau < 0.05 && max(&pushed) < 0.9, "{pushed:?}");
     // The observer has found the push: it is far below that of the pushes, 8 Nm.
@@ -59,7 +59,7 @@ fn the_ideal_arm_keeps_the_circle_and_its_pushes_leave_no_trace() {
 #[test]
 fn the_ideal_plant_does_not_depend_on_the_seed() {
     let [one, two] =
-        [1, 2].map(|seed| run(PlantKind::Ideal, true, ControllerKind::Hierarchical, seed).1);
+        [1, 2].map(|seed| run(PlantKind::Ideal, true, TorqueLaw::Hierarchical, seed).1);
     assert!(one == two);
 }
 
@@ -68,9 +68,9 @@ fn the_realistic_arm_is_pushed_and_stays_within_its_limits_for_ten_seeds() {
     let mut least_gain = f64::INFINITY;
     for seed in 1..=10 {
         let [product, no_observer, acceleration_level] = [
-            ControllerKind::Hierarchical,
-            ControllerKind::NoObserver,
-            ControllerKind::AccelerationLevel,
+            TorqueLaw::Hierarchical,
+            TorqueLaw::NoObserver,
+            TorqueLaw::AccelerationLevel,
         ]
         .map(|controller| run(PlantKind::Realistic, true, controller, seed).0);
         assert!(
@@ -86,17 +86,25 @@ fn the_realistic_arm_is_pushed_and_stays_within_its_limits_for_ten_seeds() {
     assert!(least_gain >= 8.0, "{least_gain}");
 }
 
+/// The springs of the robot's position controller keep the circle, and the body in its
+/// place: 35 N at the elbow are less than a mrad of 2e4 Nm/rad.
+#[test]
+fn positions_track_and_do_not_give_way() {
+    let travel = |summary: &Summary| summary.joints.range_deg[2];
+    for plant in [PlantKind::Ideal, PlantKind::Realistic] {
+        let controller = ControllerKind::VelocityLevel;
+        let [pushed, free] = [true, false].map(|contacts| run(plant, contacts, controller, 1).0);
+        assert!(rms(&pushed) < 0.25 && max(&pushed) < 0.6, "{pushed:?}");
+        assert!((travel(&pushed) - travel(&free)).abs() < 0.06);
+        let soft = run(plant, true, TorqueLaw::Hierarchical, 1).0;
+        assert!(travel(&soft) - travel(&free) > 5.0);
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
-    let [one, again, other] = [1, 1, 2].map(|seed| {
-        run(
-            PlantKind::Realistic,
-            true,
-            ControllerKind::Hierarchical,
-            seed,
-        )
-        .1
-    });
+    let [one, again, other] =
+        [1, 1, 2].map(|seed| run(PlantKind::Realistic, true, TorqueLaw::Hierarchical, seed).1);
     assert!(one == again);
     assert!(one != other);
 }
@@ -104,7 +112,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
 /// The trace is what the summary was computed from.
 #[test]
 fn the_trace_holds_what_the_summary_says() {
-    let (summary, trace) = run(PlantKind::Realistic, true, ControllerKind::Hierarchical, 3);
+    let (summary, trace) = run(PlantKind::Realistic, true, TorqueLaw::Hierarchical, 3);
     let text = String::from_utf8(trace).expect("plain text");
     let mut lines = text.lines();
     let header: Vec<_> = lines.next().expect("header").split(',').collect();

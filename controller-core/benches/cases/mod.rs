@@ -9,6 +9,7 @@ use controller_core::arm::{
 };
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
+use controller_core::resolver::{Resolver, ResolverConfig};
 use controller_core::{
     Axes, Controller, ControllerConfig, Measurement, NullSpace, Reference, Target, Task, TaskGains,
     TaskSet,
@@ -23,6 +24,7 @@ const RANDOM: usize = 2_000;
 pub struct Case<T: Real> {
     pub name: String,
     pub controller: Controller<T>,
+    pub resolver: Resolver<T>,
 }
 
 /// One cycle's input, in double precision.
@@ -54,8 +56,14 @@ pub fn levels<T: Real>(count: usize) -> Case<T> {
         cycle_s: 0.002,
         dead_cycles: 0,
     };
+    let resolver = ResolverConfig {
+        tasks: config.tasks,
+        gain: 10.0,
+        cycle_s: config.cycle_s,
+    };
     Case {
         name: format!("{count}-levels-{}", std::any::type_name::<T>()),
+        resolver: Resolver::new(&LWR_IV, &resolver).expect("a valid configuration"),
         controller: Controller::new(&LWR_IV, &config).expect("a valid configuration"),
     }
 }

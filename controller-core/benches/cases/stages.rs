@@ -1,10 +1,11 @@
-//! A cycle and its stages, each behind a call of its own: callgrind counts these
+//! A cycle, its stages and a cycle of the resolver, each behind a call of its own: callgrind counts these
 //! functions by name, and the timer cannot see through them.
 
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::stages::Run;
 use controller_core::cycle::{Data, Input};
 use controller_core::real::Real;
+use controller_core::resolver::{Resolution, Resolver, ResolverState};
 use controller_core::{Controller, Measurement, Reference, State, Step};
 
 #[inline(never)]
@@ -28,4 +29,14 @@ pub fn stage<T: Real>(
     data: &mut Data<T>,
 ) {
     run(controller, input, data);
+}
+
+#[inline(never)]
+pub fn resolve<T: Real>(
+    resolver: &Resolver<T>,
+    state: &mut ResolverState<T>,
+    measurement: &Measurement<T>,
+    reference: &Reference<T>,
+) -> Resolution<T> {
+    resolver.step(state, measurement, reference)
 }

@@ -1,7 +1,8 @@
-//! Proof that constructor and cycle cannot panic: on the target the panic handler
-//! calls a function that does not exist, so that this image links only if no panic
-//! is reachable from one to seven task rows in either precision. There is no
-//! allocator either. On the host it runs what it links.
+//! Proof that constructor and cycle cannot panic, those of the controller and of the
+//! velocity-level resolver: on the target the panic handler calls a function that does
+//! not exist, so that this image links only if no panic is reachable from one to seven
+//! task rows in either precision. There is no allocator either. On the host it runs what
+//! it links.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -9,6 +10,7 @@ use core::hint::black_box;
 
 use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::cycle::record::Recorder;
+use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
 use controller_core::{
     Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
     TaskSet,
@@ -67,7 +69,20 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
     state.resume_after_gap();
     state.reset();
     black_box((&recorder, &controller.rest_reference(&measurement.q)));
-    step.status.fault.is_none() && controller.level_count() == ROWS.div_ceil(3)
+    let resolver = ResolverConfig {
+        tasks,
+        gain: 10.0,
+        cycle_s: scenario::CYCLE_S,
+    };
+    let Ok(resolver) = Resolver::<T>::new(black_box(&LWR_IV), black_box(&resolver)) else {
+        return false;
+    };
+    let mut state = ResolverState::new(measurement.q);
+    let resolution = resolver.step(&mut state, &measurement, &reference);
+    state.reset();
+    step.status.fault.is_none()
+        && controller.level_count() == ROWS.div_ceil(3)
+        && resolution.status.fault.is_none()
 }
 
 /// Both precisions, every number of rows.

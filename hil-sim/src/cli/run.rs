@@ -9,7 +9,7 @@ use clap::Args;
 use controller_core::Controller;
 
 use super::files::Files;
-use crate::controllers::ControllerKind;
+use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
@@ -135,7 +135,7 @@ impl RunOptions {
         };
         let controller = ControllerKind::from_name(&self.controller)?;
         let measurement = MeasurementKind::from_name(&self.measurement)?;
-        if measurement == MeasurementKind::Fri && controller != ControllerKind::Hierarchical {
+        if measurement == MeasurementKind::Fri && controller != TorqueLaw::Hierarchical.into() {
             let allowed = "hierarchical with --measurement fri, which runs the product alone";
             return Err(Invalid::new("controller", &self.controller, allowed));
         }
@@ -183,7 +183,7 @@ pub fn comparison() -> Result<u8, Invalid> {
         scenario: Scenario::find("two-level")?,
         plant: PlantKind::Realistic,
         contacts: true,
-        controller: ControllerKind::Hierarchical,
+        controller: TorqueLaw::Hierarchical.into(),
         null_stiffness: NullStiffness::Normal,
         measurement: MeasurementKind::Direct,
         seed: 1,
@@ -191,10 +191,8 @@ pub fn comparison() -> Result<u8, Invalid> {
     };
     let summary = execute(&product, &out, None)?;
     let mut rows = vec![summary.clone()];
-    for controller in [
-        ControllerKind::NoObserver,
-        ControllerKind::AccelerationLevel,
-    ] {
+    for law in [TorqueLaw::NoObserver, TorqueLaw::AccelerationLevel] {
+        let controller = ControllerKind::from(law);
         let other = Experiment {
             controller,
             ..product.clone()
@@ -237,7 +235,7 @@ fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
     let bound = config.damping_bound();
     let mode = controller.fastest_mode();
     let value = mode.rate * experiment.scenario.cycle_s();
-    if value > bound / 2.0 && experiment.controller == ControllerKind::Hierarchical {
+    if value > bound / 2.0 && experiment.controller == TorqueLaw::Hierarchical.into() {
         tell(format_args!(
             "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
              (joint {}, stretched postures)",

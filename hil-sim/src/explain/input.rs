@@ -7,7 +7,7 @@ use controller_core::task::orientation::Quaternion;
 use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
-use crate::controllers::ControllerKind;
+use crate::controllers::TorqueLaw;
 use cell::invalid::{Invalid, in_range};
 use cell::names::Named;
 use cell::reworded::reworded;
@@ -151,7 +151,7 @@ impl Input {
             finite(name, values)?;
         }
         if let Some(name) = &self.controller {
-            ControllerKind::from_name(name)?;
+            TorqueLaw::from_name(name)?;
         }
         if self.levels.is_empty() {
             return Err(Invalid::new("levels", "none", "1 to 7 levels"));
@@ -189,9 +189,9 @@ impl Input {
 
     /// The law.
     #[must_use]
-    pub fn controller(&self) -> ControllerKind {
+    pub fn controller(&self) -> TorqueLaw {
         let name = self.controller.as_deref().unwrap_or("hierarchical");
-        ControllerKind::from_name(name).unwrap_or(ControllerKind::Hierarchical)
+        TorqueLaw::from_name(name).unwrap_or(TorqueLaw::Hierarchical)
     }
 
     /// The core's tasks and their targets.

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::plan::{DRIFT, Family, PERIODS_S, period_id};
 use super::results::{Results, Worst};
 use super::stability::{CYCLES_MS, Evidence};
-use crate::controllers::ControllerKind::{
+use crate::controllers::ControllerKind::{self, VelocityLevel};
+use crate::controllers::TorqueLaw::{
     AccelerationLevel, AccelerationLevelEstimate, AsPrinted, Hierarchical, Literal, NoObserver,
 };
 use crate::report::ticks;
@@ -44,7 +45,8 @@ impl Verdict {
 pub struct Claim {
     /// Short name.
     pub id: String,
-    /// Section of the paper, or "errata", "attribution", "stability".
+    /// Section of the paper, or "attribution", "velocity-level", "stability",
+    /// "errata".
     pub section: &'static str,
     /// The claim as a sentence.
     pub claim: String,
@@ -175,6 +177,7 @@ pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Claim> {
     claims.extend(three_levels(results));
     claims.extend(discussion(results));
     claims.extend(attribution(results));
+    claims.extend(velocity_level(results));
     claims.extend(stability(evidence));
     claims.extend(errata(results));
     claims
@@ -371,6 +374,58 @@ fn attribution(results: &Results) -> Vec<Claim> {
                 Family::pushed("two-level", Realistic, Hierarchical), rms(0)).value,
             run: Family::pushed("two-level", Realistic, Hierarchical).id(1),
         }, "times", Below(0.125));
+    s.claims
+}
+
+fn velocity_level(results: &Results) -> Vec<Claim> {
+    use Sense::{AtLeast, Below};
+    use Whose::Ours;
+    let mut s = Section {
+        name: "velocity-level",
+        claims: Vec::new(),
+    };
+    for (scenario, limits) in [
+        ("two-level", &[0.55][..]),
+        ("case-1", &[0.85, 0.2]),
+        ("case-2", &[0.55, 0.2]),
+    ] {
+        let family = Family::pushed(scenario, Realistic, VelocityLevel);
+        for (level, &limit) in limits.iter().enumerate() {
+            let number = level + 1;
+            s.add(
+                Ours,
+                &format!("{scenario}-level{number}"),
+                &format!(
+                    "{scenario}: velocity-level priorities above the robot's own position \
+                     controller keep level {number} while the body is pushed: rms error."
+                ),
+                results.worst(family, rms(level)),
+                "mm",
+                Below(limit),
+            );
+        }
+    }
+    let travel = |summary: &Summary| Some(summary.joints.range_deg[2]);
+    let yields = |controller: ControllerKind| {
+        difference(
+            results,
+            Family::pushed("two-level", Ideal, controller),
+            travel,
+        )
+    };
+    let (stiff, soft) = (yields(VelocityLevel), yields(Hierarchical.into()));
+    s.add(
+        Ours,
+        "compliance",
+        "With them the body does not give way: more travel of joint 3 with the pushes than \
+         without, hierarchical torque law over velocity level, exact model.",
+        Worst {
+            value: soft.value / stiff.value.abs(),
+            run: stiff.run,
+        },
+        "times",
+        AtLeast(10.0),
+    );
     s.claims
 }
 

@@ -5,8 +5,9 @@ use controller_core::joint::DOF;
 use super::plan::Family;
 use super::results::{Outcome, Results};
 use super::stability::{CYCLES_MS, Evidence};
-use crate::controllers::ControllerKind::{
-    self, AccelerationLevel, AccelerationLevelEstimate, Hierarchical, NoObserver,
+use crate::controllers::ControllerKind::{self, VelocityLevel};
+use crate::controllers::TorqueLaw::{
+    AccelerationLevel, AccelerationLevelEstimate, Hierarchical, NoObserver,
 };
 use crate::report::plot::{Chart, Panel, Scale, Series, Stroke, Style};
 use crate::report::svg::Svg;
@@ -38,7 +39,12 @@ pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Figure> {
             "fig04.svg",
             "two-level",
             "the paper's Fig. 4",
-            &[Hierarchical, NoObserver, AccelerationLevel],
+            &[
+                Hierarchical.into(),
+                NoObserver.into(),
+                AccelerationLevel.into(),
+                VelocityLevel,
+            ],
         ),
         postures(results, "fig05.svg", "two-level", "the paper's Fig. 5"),
         errors(
@@ -46,7 +52,12 @@ pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Figure> {
             "fig06.svg",
             "case-1",
             "the paper's Fig. 6",
-            &[Hierarchical, AccelerationLevel, AccelerationLevelEstimate],
+            &[
+                Hierarchical.into(),
+                AccelerationLevel.into(),
+                AccelerationLevelEstimate.into(),
+                VelocityLevel,
+            ],
         ),
         torques(results, "fig07.svg", "case-1", "the paper's Fig. 7"),
         postures(results, "fig08.svg", "case-2", "the paper's Fig. 8"),
@@ -55,7 +66,12 @@ pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Figure> {
             "fig09.svg",
             "case-2",
             "the paper's Fig. 9",
-            &[Hierarchical, AccelerationLevel, AccelerationLevelEstimate],
+            &[
+                Hierarchical.into(),
+                AccelerationLevel.into(),
+                AccelerationLevelEstimate.into(),
+                VelocityLevel,
+            ],
         ),
         torques(results, "fig10.svg", "case-2", "the paper's Fig. 10"),
         hand(results),

@@ -9,13 +9,17 @@ use crate::report::svg::escape;
 use crate::report::tables::{Table, columns, number};
 use crate::report::ticks;
 
-const SECTIONS: [(&str, &str); 6] = [
+const SECTIONS: [(&str, &str); 7] = [
     ("6.1", "6.1 Two levels: a circle while the body is pushed"),
     ("6.2", "6.2 Three levels"),
     ("6.3", "6.3 Discussion: residual, and a hand at the elbow"),
     (
         "attribution",
         "What the observer brings, and what the hierarchy",
+    ),
+    (
+        "velocity-level",
+        "The same priorities on velocity level, above the robot's position controller",
     ),
     ("stability", "Stability as the paper argues it"),
     ("errata", "Where the printed formulas fail"),

@@ -1,6 +1,7 @@
 //! Which runs the paper's experiments need.
 
-use crate::controllers::ControllerKind::{
+use crate::controllers::ControllerKind::{self, VelocityLevel};
+use crate::controllers::TorqueLaw::{
     self, AccelerationLevel, AccelerationLevelEstimate, AsPrinted, Hierarchical, Literal,
     NoObserver,
 };
@@ -44,16 +45,16 @@ pub struct Family {
 impl Family {
     /// Contacts on, scenario's stiffness.
     #[must_use]
-    pub const fn pushed(
+    pub fn pushed(
         scenario: &'static str,
         plant: PlantKind,
-        controller: ControllerKind,
+        controller: impl Into<ControllerKind>,
     ) -> Self {
         Self {
             scenario,
             plant,
             contacts: true,
-            controller,
+            controller: controller.into(),
             stiffness: NullStiffness::Normal,
         }
     }
@@ -114,7 +115,7 @@ impl Family {
 
 /// Name of a run of the first case, ideal and free, at another circle period.
 #[must_use]
-pub fn period_id(controller: ControllerKind, period_s: f64) -> String {
+pub fn period_id(controller: TorqueLaw, period_s: f64) -> String {
     format!("case-1-period-{period_s}s-{}", controller.name())
 }
 
@@ -131,6 +132,7 @@ pub fn all() -> Result<Vec<Planned>, Invalid> {
         Family::pushed("two-level", Ideal, Hierarchical),
         Family::pushed("two-level", Ideal, NoObserver),
         Family::pushed("two-level", Ideal, AsPrinted),
+        Family::pushed("two-level", Ideal, VelocityLevel),
         Family::pushed("two-level", Realistic, Hierarchical).free(),
         Family::pushed("two-level", Realistic, AccelerationLevel).free(),
         Family::pushed("two-level", Realistic, NoObserver),
@@ -142,6 +144,8 @@ pub fn all() -> Result<Vec<Planned>, Invalid> {
         for controller in [Hierarchical, AccelerationLevel, AccelerationLevelEstimate] {
             families.push(Family::pushed(scenario, Realistic, controller));
         }
+        families.push(Family::pushed(scenario, Realistic, VelocityLevel));
+        families.push(Family::pushed(scenario, Ideal, VelocityLevel).free());
     }
     for stiffness in [
         NullStiffness::Low,

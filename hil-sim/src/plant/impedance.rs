@@ -9,7 +9,7 @@
 //! step of one joint has the determinant (2 + w) / (2 + 2 w) < 1 and both its
 //! eigenvalues inside the unit circle.
 
-use controller_core::joint::{JointState, JointVector};
+use controller_core::joint::{JointMatrix, JointState, JointVector};
 
 use super::friction::Friction;
 
@@ -36,6 +36,27 @@ impl Impedance {
             damping: JointVector::zeros(),
             target: JointVector::zeros(),
             rate: JointVector::zeros(),
+        }
+    }
+
+    /// Springs of `stiffness` \[Nm/rad\] to a position that moves evenly from `from` to
+    /// `to` \[rad\] during a cycle, with D_i = 2 d_i sqrt(K_i M_ii) for the damping
+    /// ratios d = `ratio` and the mass matrix M \[kg m2\].
+    #[must_use]
+    pub fn moving(
+        stiffness: &JointVector<f64>,
+        ratio: &JointVector<f64>,
+        mass_matrix: &JointMatrix<f64>,
+        [from, to]: [&JointVector<f64>; 2],
+        cycle_s: f64,
+    ) -> Self {
+        Self {
+            stiffness: *stiffness,
+            damping: JointVector::from_fn(|i, _| {
+                2.0 * ratio[i] * (stiffness[i] * mass_matrix[(i, i)]).sqrt()
+            }),
+            target: *from,
+            rate: (to - from) / cycle_s,
         }
     }
 

@@ -229,7 +229,7 @@ mod tests {
     use super::super::recording::{ArmSnapshot, Recording};
     use super::super::svg::well_formed;
     use super::*;
-    use crate::controllers::ControllerKind;
+    use crate::controllers::TorqueLaw;
     use crate::experiment::Experiment;
     use crate::plant::PlantOptions;
     use cell::names::PlantKind;
@@ -245,7 +245,7 @@ mod tests {
             scenario: scenario.clone(),
             plant: PlantKind::Realistic,
             contacts: true,
-            controller: ControllerKind::Hierarchical,
+            controller: TorqueLaw::Hierarchical.into(),
             null_stiffness: NullStiffness::Normal,
             measurement: MeasurementKind::Direct,
             seed: 1,

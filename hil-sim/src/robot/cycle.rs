@@ -4,13 +4,13 @@ use controller_core::joint::JointVector;
 use fri::{InterfaceState, Measurement};
 
 use super::arm::{Robot, Seen, Start};
+use super::driving::{Driving, Limited};
 use super::inbox::{self, Answer};
 use super::krc::Now;
 use super::options::{RobotAdds, cycles};
 use super::order;
 use crate::arm_points::origins;
 use crate::contact::push_torque;
-use crate::plant::Impedance;
 use crate::sample::{Stop, UnsafeMotion};
 use record::run::Sample;
 
@@ -96,18 +96,16 @@ impl Robot {
         if self.setup.options.adds == RobotAdds::GravityCoriolis {
             explicit += self.model.coriolis(&seen.measured, &seen.mass_matrix);
         }
+        let whole = Driving {
+            torque: explicit,
+            impedance: driving.impedance,
+        };
         let motors = self.plant.motors().unwrap_or(self.plant.state());
-        let by_springs = driving.impedance.torque(motors);
-        let mut applied = explicit + by_springs;
-        let mut saturated = false;
-        for joint in 0..applied.len() {
-            let limit = self.torque_limit[joint];
-            if applied[joint].abs() > limit {
-                applied[joint] = applied[joint].clamp(-limit, limit);
-                explicit[joint] = applied[joint] - by_springs[joint];
-                saturated = true;
-            }
-        }
+        let Limited {
+            driving,
+            torque: applied,
+            saturated,
+        } = whole.limited(motors, &self.torque_limit);
         if let (Some(last), true) = (self.applied, bridging) {
             let by_link = applied - last - self.krc.ordered_change();
             self.counters.step = self.counters.step.max(by_link.amax());
@@ -124,7 +122,7 @@ impl Robot {
             .krc
             .order()
             .map_or(JointVector::zeros(), |order| order.residual);
-        self.move_on(&explicit, &driving.impedance);
+        self.move_on(&driving);
 
         let (t_s, start) = (t_s?, self.start.as_ref()?);
         let scenario = &self.setup.scenario;
@@ -149,17 +147,21 @@ impl Robot {
     }
 
     /// Moves the arm to the next cycle.
-    fn move_on(&mut self, torque: &JointVector<f64>, impedance: &Impedance) {
+    fn move_on(&mut self, driving: &Driving) {
         let (robot_t, scenario_t) = (self.robot_time_s(), self.contact_time_s());
         let (contacts, typed) = (&self.contacts, &self.typed);
-        self.plant
-            .advance_with(scenario_t, torque, impedance, |t, model, state| {
+        self.plant.advance_with(
+            scenario_t,
+            &driving.torque,
+            &driving.impedance,
+            |t, model, state| {
                 let (scripted, _) = contacts.joint_torque(t, model, state);
                 let at = robot_t + (t - scenario_t);
                 typed.iter().fold(scripted, |sum, push| {
                     sum + push_torque(push, at, model, state)
                 })
-            });
+            },
+        );
         self.typed.retain(|push| push.to_s > robot_t);
         self.cycle += 1;
         self.seen = None;

@@ -1,7 +1,7 @@
 //! What the motors get besides the robot's own weight, and how one way of driving
 //! turns into another without a step.
 
-use controller_core::joint::JointVector;
+use controller_core::joint::{JointState, JointVector};
 
 use crate::plant::{DeadTime, Impedance};
 
@@ -14,6 +14,17 @@ pub struct Driving {
     pub impedance: Impedance,
 }
 
+/// A way of driving that the motors can give.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limited {
+    /// What is added, and the springs and dampers.
+    pub driving: Driving,
+    /// All that the motors give at the start of the cycle \[Nm\].
+    pub torque: JointVector<f64>,
+    /// Whether a joint was cut.
+    pub saturated: bool,
+}
+
 impl Driving {
     /// Springs and dampers alone.
     #[must_use]
@@ -22,6 +33,27 @@ impl Driving {
             torque: JointVector::zeros(),
             impedance,
         }
+    }
+
+    /// The same within the torque `limit` \[Nm\] of each joint for `motors` that move so;
+    /// what is too much is taken off the added torque.
+    #[must_use]
+    pub fn limited(&self, motors: &JointState<f64>, limit: &JointVector<f64>) -> Limited {
+        let by_springs = self.impedance.torque(motors);
+        let mut limited = Limited {
+            driving: *self,
+            torque: self.torque + by_springs,
+            saturated: false,
+        };
+        for (joint, &limit) in limit.iter().enumerate() {
+            let torque = &mut limited.torque[joint];
+            if torque.abs() > limit {
+                *torque = torque.clamp(-limit, limit);
+                limited.driving.torque[joint] = *torque - by_springs[joint];
+                limited.saturated = true;
+            }
+        }
+        limited
     }
 
     /// Where the springs are at the end of a cycle, at rest there.
@@ -157,7 +189,6 @@ impl Pipe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::joint::JointState;
 
     #[test]
     fn the_sum_of_torques_goes_evenly_from_old_to_new() {

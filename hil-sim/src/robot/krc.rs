@@ -410,22 +410,15 @@ impl Krc {
             .unwrap_or(JointVector::repeat(self.options.stiffness))
     }
 
-    /// Springs K to the commanded position, which moves evenly during the cycle,
-    /// with D_i = 2 d_i sqrt(K_i M_ii).
+    /// Springs K to the commanded position, which moves evenly during the cycle.
     fn springs(
         &self,
         now: &Now<'_>,
         stiffness: &JointVector<f64>,
         ratio: &JointVector<f64>,
     ) -> Impedance {
-        Impedance {
-            stiffness: *stiffness,
-            damping: JointVector::from_fn(|i, _| {
-                2.0 * ratio[i] * (stiffness[i] * now.mass_matrix[(i, i)]).sqrt()
-            }),
-            target: self.from,
-            rate: (self.commanded - self.from) / self.cycle_s,
-        }
+        let way = [&self.from, &self.commanded];
+        Impedance::moving(stiffness, ratio, now.mass_matrix, way, self.cycle_s)
     }
 
     /// In monitor state: whether command state begins with the next measurement.

@@ -36,12 +36,13 @@ mod report;
 mod summary;
 
 pub use arm::{Robot, RobotSetup};
+pub(crate) use driving::Driving;
 pub use figures::{Event, LatencyFigures, LinkFigures, QualityCycles, Rejected, StateCycles};
 pub use fri::InterfaceState as State;
 pub use fri::measurement::LEN as MEASUREMENT_BYTES;
 pub use inbox::Answer;
 pub use krc::Krc;
 pub use model::RobotModel;
-pub use options::{Krl, RatingOptions, RobotAdds, RobotOptions, Scheme};
+pub use options::{Krl, POSITION_STIFFNESS, RatingOptions, RobotAdds, RobotOptions, Scheme};
 pub use order::Order;
 pub use rating::{Rating, Statistics};

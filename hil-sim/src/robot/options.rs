@@ -67,6 +67,9 @@ impl Scheme {
     }
 }
 
+/// Stiffness of the position scheme \[Nm/rad\].
+pub const POSITION_STIFFNESS: f64 = 2e4;
+
 /// What the robot adds to the commanded torque from its own model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RobotAdds {
@@ -162,7 +165,7 @@ impl Default for RobotOptions {
             jump_rad: 0.1,
             stiffness: 1000.0,
             damping: 0.7,
-            position_stiffness: 2e4,
+            position_stiffness: POSITION_STIFFNESS,
             fade_s: 0.1,
             settle_s: 1.0,
             drives_off_s: None,

@@ -1,0 +1,195 @@
+//! What a controller makes of a measurement: torques for the motors, or positions for the
+//! robot's own position controller.
+
+use controller_core::arm::ArmParameters;
+use controller_core::cycle::Data;
+use controller_core::joint::{JointState, JointVector};
+use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
+use controller_core::{Controller, Fault, Measurement, Reference, State};
+
+use crate::controllers::{LawGains, SplitDemand, TorqueLaw};
+use crate::plant::{DeadTime, Impedance, PlantOptions};
+use crate::robot::{Driving, POSITION_STIFFNESS, RobotModel};
+use cell::invalid::Invalid;
+use cell::scenario::Scenario;
+
+/// K of the velocity-level controller \[1/s\].
+pub const RESOLVER_GAIN: f64 = 10.0;
+
+/// What a cycle decided, and what acts until the next.
+pub(super) struct Decision {
+    pub fault: Option<Fault>,
+    pub driving: Driving,
+    /// All that the motors give at the start of the cycle \[Nm\].
+    pub torque: JointVector<f64>,
+    /// r \[Nm\]; zero where nothing observes.
+    pub residual: JointVector<f64>,
+    pub saturated: bool,
+    pub rank: bool,
+    pub view: PriorityView,
+}
+
+/// What a torque law knew beyond its result.
+#[derive(Default)]
+pub(super) struct PriorityView {
+    pub conditioning: Vec<f64>,
+    /// Torque asked for below each level \[Nm\].
+    pub below: Vec<JointVector<f64>>,
+}
+
+impl PriorityView {
+    fn new(data: &Data<f64>, demand: &SplitDemand) -> Self {
+        let hierarchy = &data.hierarchy;
+        Self {
+            conditioning: hierarchy.conditioning()[..hierarchy.count()].to_vec(),
+            below: (0..hierarchy.levels())
+                .map(|level| demand.below(&data.dynamics, level))
+                .collect(),
+        }
+    }
+}
+
+/// A controller with its memory, and the part of the robot that it talks to.
+pub(super) enum Driver<'a> {
+    Torque(Box<TorqueDriver<'a>>),
+    Position(Box<PositionDriver>),
+}
+
+impl Driver<'_> {
+    /// The plant's share of `options`: the dead time of positions is on their way to the
+    /// robot's springs, which themselves have none.
+    pub fn plant_options(&self, options: PlantOptions) -> PlantOptions {
+        match self {
+            Self::Torque(_) => options,
+            Self::Position(_) => PlantOptions {
+                dead_cycles: 0,
+                ..options
+            },
+        }
+    }
+
+    /// One cycle. `motors` is how they move.
+    pub fn decide(
+        &mut self,
+        measurement: &Measurement<f64>,
+        reference: &Reference<f64>,
+        motors: &JointState<f64>,
+    ) -> Decision {
+        match self {
+            Self::Torque(driver) => driver.decide(measurement, reference),
+            Self::Position(driver) => driver.decide(measurement, reference, motors),
+        }
+    }
+}
+
+/// A torque law inside the core's cycle.
+pub(super) struct TorqueDriver<'a> {
+    controller: &'a Controller<f64>,
+    law: TorqueLaw,
+    gains: LawGains,
+    state: State<f64>,
+}
+
+impl<'a> TorqueDriver<'a> {
+    pub fn new(controller: &'a Controller<f64>, law: TorqueLaw, scenario: &Scenario) -> Self {
+        Self {
+            controller,
+            law,
+            gains: LawGains {
+                rate: JointVector::repeat(scenario.null_space.rate_gain),
+                stiffness: controller.compliance().stiffness,
+            },
+            state: State::new(),
+        }
+    }
+
+    fn decide(&mut self, measurement: &Measurement<f64>, reference: &Reference<f64>) -> Decision {
+        let mut view = PriorityView::default();
+        let (law, gains, state) = (self.law, &self.gains, &mut self.state);
+        let step = self
+            .controller
+            .step_with(state, measurement, reference, |_, _, data| {
+                let demand = law.decide(data, gains);
+                view = PriorityView::new(data, &demand);
+                data.demand = demand.demand(&data.dynamics);
+            });
+        Decision {
+            fault: step.status.fault,
+            driving: Driving {
+                torque: step.torque,
+                impedance: Impedance::none(),
+            },
+            torque: step.torque,
+            residual: step.residual,
+            saturated: step.status.saturated.any(),
+            rank: step.status.rank.any(),
+            view,
+        }
+    }
+}
+
+/// The velocity-level resolver above the position scheme of the robot: stiff springs to
+/// the commanded position, gravity by the robot's own model.
+pub(super) struct PositionDriver {
+    resolver: Resolver<f64>,
+    state: ResolverState<f64>,
+    cycle_s: f64,
+    /// Where the springs are at rest now \[rad\].
+    reached: JointVector<f64>,
+    /// The way of commands to the robot.
+    way: DeadTime,
+    model: RobotModel,
+    torque_limit: JointVector<f64>,
+}
+
+impl PositionDriver {
+    /// At the start of a scenario, commands act `dead_cycles` later.
+    pub fn new(scenario: &Scenario, dead_cycles: usize) -> Result<Self, Invalid> {
+        let (arm, start): (&ArmParameters, _) = (scenario.arm(), scenario.start());
+        let config = ResolverConfig {
+            tasks: scenario.controller_config(0)?.tasks,
+            gain: RESOLVER_GAIN,
+            cycle_s: scenario.cycle_s(),
+        };
+        let resolver = Resolver::new(arm, &config)
+            .map_err(|error| Invalid::line(error).within(&scenario.name))?;
+        Ok(Self {
+            resolver,
+            state: ResolverState::new(start),
+            cycle_s: scenario.cycle_s(),
+            reached: start,
+            way: DeadTime::new(dead_cycles, start),
+            model: RobotModel::new(arm),
+            torque_limit: JointVector::from_fn(|i, _| arm.links[i].torque_limit),
+        })
+    }
+
+    fn decide(
+        &mut self,
+        measurement: &Measurement<f64>,
+        reference: &Reference<f64>,
+        motors: &JointState<f64>,
+    ) -> Decision {
+        let step = self.resolver.step(&mut self.state, measurement, reference);
+        let commanded = self.way.pass(&step.q);
+        let impedance = Impedance::moving(
+            &JointVector::repeat(POSITION_STIFFNESS),
+            &JointVector::repeat(1.0),
+            &self.model.mass_matrix(&measurement.q),
+            [&self.reached, &commanded],
+            self.cycle_s,
+        );
+        self.reached = commanded;
+        let torque = self.model.gravity(&measurement.q);
+        let limited = Driving { torque, impedance }.limited(motors, &self.torque_limit);
+        Decision {
+            fault: step.status.fault,
+            driving: limited.driving,
+            torque: limited.torque,
+            residual: JointVector::zeros(),
+            saturated: limited.saturated || step.status.saturated.any(),
+            rank: step.status.rank.any(),
+            view: PriorityView::default(),
+        }
+    }
+}
