@@ -91,12 +91,29 @@ pub enum ConfigError {
         /// That pivot.
         pivot: f64,
     },
-    /// The observer gain of a joint is not above 0, or not finite.
+    /// The gains of a task need a shorter cycle, see
+    /// [`longest_cycle`](crate::law::gain_bound::longest_cycle).
+    TaskGains {
+        /// Its level.
+        level: usize,
+        /// K_p \[1/s2\].
+        stiffness: f64,
+        /// K_d \[1/s\].
+        damping: f64,
+        /// The cycle \[s\].
+        cycle_s: f64,
+        /// What it must stay below \[s\].
+        bound: f64,
+    },
+    /// The observer gain of a joint is not above 0, not finite, or too large for the dead
+    /// time of the loop.
     ObserverGain {
         /// The joint.
         joint: usize,
         /// Its gain \[1/s\].
         value: f64,
+        /// Its largest value \[1/s\].
+        bound: f64,
     },
     /// The gain of a resolver is not above 0, or more than the cycle carries.
     ResolverGain {
@@ -187,10 +204,25 @@ impl fmt::Display for ConfigError {
                      (a diagonal one: every entry above 0)"
                 )
             }
-            Self::ObserverGain { joint, value } => write!(
+            Self::TaskGains {
+                level,
+                stiffness,
+                damping,
+                cycle_s,
+                bound,
+            } => write!(
+                f,
+                "level {level}: task stiffness {stiffness} 1/s2 and damping {damping} 1/s make \
+                 the sampled loop unstable: the cycle is {cycle_s} s; it must be below {bound:.6} s"
+            ),
+            Self::ObserverGain {
+                joint,
+                value,
+                bound,
+            } => write!(
                 f,
                 "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
-                 {GAIN_MAX:e}"
+                 {bound}"
             ),
             Self::ResolverGain { value, bound } => write!(
                 f,

@@ -3,6 +3,7 @@
 
 pub mod allocation;
 pub mod control;
+pub mod gain_bound;
 pub mod hierarchy;
 pub mod motion;
 pub mod null_space;

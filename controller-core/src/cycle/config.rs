@@ -3,6 +3,7 @@
 use crate::arm::ArmModel;
 use crate::error::ConfigError;
 use crate::joint::DOF;
+use crate::law::gain_bound;
 use crate::law::null_space::{NullDamping, NullSpace, matrix};
 use crate::law::sampling::{self, DampingRate};
 use crate::ranges::{CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, INERTIA_DAMPING_BOUND};
@@ -38,17 +39,30 @@ impl ControllerConfig {
             let value = self.cycle_s;
             return Err(ConfigError::Cycle { value });
         }
-        for (joint, &value) in (1..).zip(&self.observer_gain) {
-            if !(value > 0.0 && value <= GAIN_MAX) {
-                return Err(ConfigError::ObserverGain { joint, value });
-            }
-        }
-        self.null_space.validate()?;
         if self.dead_cycles > DEAD_CYCLES_MAX {
             return Err(ConfigError::DeadCycles {
                 value: self.dead_cycles,
             });
         }
+        // The exact form of (30) is stable for any gain; what it makes of a torque that
+        // acts late is not.
+        let bound = match self.dead_cycles {
+            0 => GAIN_MAX,
+            late => sampling::bound(late) / self.cycle_s,
+        };
+        for (joint, &value) in (1..).zip(&self.observer_gain) {
+            if !(value > 0.0 && value <= bound) {
+                return Err(ConfigError::ObserverGain {
+                    joint,
+                    value,
+                    bound,
+                });
+            }
+        }
+        for (level, task) in (1..).zip(self.tasks.tasks()) {
+            gain_bound::check(task, level, self.cycle_s, self.dead_cycles)?;
+        }
+        self.null_space.validate()?;
         self.validate_damping(arm)
     }
 

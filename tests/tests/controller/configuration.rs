@@ -8,9 +8,10 @@ use controller_core::law::null_space::NullDamping;
 use controller_core::ranges::{DEAD_CYCLES_MAX, GAIN_MAX};
 use controller_core::task::Tracked;
 use controller_core::{
-    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, State, Target, Task, TaskSet,
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, NullSpace, State, Target,
+    Task, TaskGains, TaskSet,
 };
-use stratum_tests::config::{FLANGE, REFERENCE_GAINS, three_level, with_tasks};
+use stratum_tests::config::{FLANGE, REFERENCE_GAINS, three_level, two_level, with_tasks};
 use stratum_tests::controller;
 
 use super::{at, resting, start};
@@ -173,7 +174,9 @@ fn observer_gain_cycle_and_dead_time_have_their_ranges() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(
             line(|config| config.observer_gain[2] = value),
-            format!("observer gain of joint 3 is {value} 1/s; it must be above 0 and at most 1e9")
+            format!(
+                "observer gain of joint 3 is {value} 1/s; it must be above 0 and at most 1000000000"
+            )
         );
     }
     for value in [0.00009, 0.0201, f64::NAN, -0.002] {
@@ -239,4 +242,57 @@ fn inertia_shaped_damping_has_its_own_bound() {
             )
         );
     }
+}
+
+/// K_d h = 6, K_p = 1e5 and K_I = 1e6 with a cycle of dead time were once accepted: a hold
+/// on the ideal plant diverged.
+#[test]
+fn gains_that_the_cycle_cannot_carry_are_refused() {
+    let with = |stiffness: f64, damping: f64, dead_cycles: u8| {
+        let gains = TaskGains::uniform(stiffness, damping);
+        let config = ControllerConfig {
+            dead_cycles,
+            null_space: NullSpace {
+                damping: NullDamping::Inertia(10.0),
+                ..two_level().null_space
+            },
+            ..with_tasks(&[Task::position(FLANGE, Axes::XYZ, gains)])
+        };
+        Controller::<f64>::new(&LWR_IV, &config).map(|_| ())
+    };
+    // Without dead time K_d h < 2 and K_p h < 2 K_d.
+    for (stiffness, damping, allowed) in [
+        (400.0, 999.0, true),
+        (400.0, 1000.0, false),
+        (400.0, 3000.0, false),
+        (39_900.0, 40.0, true),
+        (40_000.0, 40.0, false),
+        (1e5, 40.0, false),
+    ] {
+        assert_eq!(
+            with(stiffness, damping, 0).is_ok(),
+            allowed,
+            "{stiffness} {damping}"
+        );
+    }
+    assert_eq!(
+        with(1e5, 40.0, 0).expect_err("too stiff").to_string(),
+        "level 1: task stiffness 100000 1/s2 and damping 40 1/s make the sampled loop unstable: \
+         the cycle is 0.002 s; it must be below 0.000800 s"
+    );
+    for late in 0..=8 {
+        assert!(with(400.0, 40.0, late).is_ok());
+    }
+    assert!(with(400.0, 500.0, 1).is_err() && with(400.0, 300.0, 8).is_err());
+    let observing = |gain: f64, dead_cycles: u8| {
+        let mut config = two_level();
+        config.null_space.damping = NullDamping::Inertia(10.0);
+        (config.dead_cycles, config.observer_gain[2]) = (dead_cycles, gain);
+        Controller::<f64>::new(&LWR_IV, &config).map(|_| ())
+    };
+    assert!(observing(1e6, 0).is_ok() && observing(499.0, 1).is_ok());
+    assert_eq!(
+        observing(1e6, 1).expect_err("too fast").to_string(),
+        "observer gain of joint 3 is 1000000 1/s; it must be above 0 and at most 500"
+    );
 }
