@@ -222,7 +222,7 @@ impl fmt::Display for ConfigError {
             } => write!(
                 f,
                 "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
-                 {bound}"
+                 {bound:.1}"
             ),
             Self::ResolverGain { value, bound } => write!(
                 f,

@@ -175,7 +175,7 @@ fn observer_gain_cycle_and_dead_time_have_their_ranges() {
         assert_eq!(
             line(|config| config.observer_gain[2] = value),
             format!(
-                "observer gain of joint 3 is {value} 1/s; it must be above 0 and at most 1000000000"
+                "observer gain of joint 3 is {value} 1/s; it must be above 0 and at most 1000000000.0"
             )
         );
     }
@@ -293,6 +293,6 @@ fn gains_that_the_cycle_cannot_carry_are_refused() {
     assert!(observing(1e6, 0).is_ok() && observing(499.0, 1).is_ok());
     assert_eq!(
         observing(1e6, 1).expect_err("too fast").to_string(),
-        "observer gain of joint 3 is 1000000 1/s; it must be above 0 and at most 500"
+        "observer gain of joint 3 is 1000000 1/s; it must be above 0 and at most 500.0"
     );
 }
