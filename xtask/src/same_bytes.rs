@@ -29,7 +29,7 @@ pub fn run(words: &[&str]) -> Outcome {
     // built, because the build may write to the very file that is the base.
     let sides = ["base", "new"].map(|side| work.join(side));
     for (source, side) in sources.iter().zip(&sides) {
-        println!("{}: {source}", side.display());
+        println!("{}: {source:?}", side.display());
         fs::create_dir_all(side)?;
         fs::copy(source.program()?, side.join("hil-sim"))?;
     }

@@ -104,7 +104,8 @@ pub fn cargo(command: &str) -> Command {
     cargo
 }
 
-/// Runs a command that has to succeed: what it prints.
+/// Runs a command that has to succeed: what it prints. An error names the whole command, and
+/// says why it could not be started or what it said.
 pub fn run(command: &mut Command) -> Result<String, Trouble> {
     let what = format!("{command:?}");
     let output = command.output();
@@ -134,13 +135,13 @@ pub fn image_build(name: &str, features: &str) -> Command {
     cargo
 }
 
-/// Builds an image.
+/// Builds an image: its path.
 pub fn image(name: &str, features: &str) -> Result<PathBuf, Trouble> {
     run(&mut image_build(name, features))?;
     Ok(target().join(TARGET).join("release").join(name))
 }
 
-/// Builds a program of a package for the host.
+/// Builds a program of a package for the host: its path.
 pub fn program(package: &str, name: &str) -> Result<PathBuf, Trouble> {
     run(cargo("build").args(["-p", package, "--release", "--bin", name]))?;
     Ok(target().join("release").join(name))
@@ -162,7 +163,8 @@ pub fn qemu(image: &Path) -> Result<Command, Trouble> {
     Ok(qemu)
 }
 
-/// Runs an image in QEMU.
+/// Runs an image in QEMU to its end, without a serial port. Its exit code is for the caller
+/// to judge.
 pub fn emulate(image: &Path, options: &[&str]) -> Result<Output, Trouble> {
     let mut qemu = qemu(image)?;
     Ok(qemu.args(["-serial", "null"]).args(options).output()?)

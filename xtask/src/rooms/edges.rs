@@ -8,7 +8,9 @@ use super::tree::{Found, ModuleId, Thing, Tree};
 /// Where a file uses another, and the path that is written there.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
+    /// From 1.
     pub line: usize,
+    /// As it is written.
     pub path: String,
 }
 
@@ -105,7 +107,8 @@ fn is_own(tree: &Tree, id: ModuleId, import: &Import) -> bool {
         })
 }
 
-/// Sets of files that use each other, by whatever way round.
+/// Sets of files that use each other, by whatever way round: each reaches all others along
+/// edges, and itself.
 pub fn circles(edges: &Edges) -> BTreeSet<BTreeSet<&str>> {
     let mut reach = BTreeMap::<&str, BTreeSet<&str>>::new();
     for (from, to) in edges.keys() {

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 
 use super::tokens::{
-    Child, Import, Way, before, begins_item, braces, child, inside, is, is_exported, is_lifetime,
-    is_test, is_variable, leaves, line, own_type, punct, text, way,
+    Child, Import, Way, before, begins_item, braces, child, inside, is, is_exported, is_test,
+    is_variable, leaves, line, own_type, punct, text, way,
 };
 
 /// Keywords before a name that is declared.
@@ -157,7 +157,7 @@ impl Text {
                 if DECLARE.contains(&keyword)
                     && name != "fn"
                     && !before(tokens, at, "*")
-                    && !is_lifetime(tokens, at) =>
+                    && !before(tokens, at, "'") =>
             {
                 match (place, own) {
                     (Place::Methods, Some(own)) => self.methods.push((own.clone(), text(name))),
@@ -251,7 +251,7 @@ impl Text {
             || before(tokens, at, ".") && !before(tokens, at, "..")
             || before(tokens, at, "$") && word != "crate"
             || before(tokens, at, ">::")
-            || is_lifetime(tokens, at)
+            || before(tokens, at, "'")
         {
             return end;
         }

@@ -167,7 +167,8 @@ pub fn is_test(tokens: &[TokenTree], at: usize) -> bool {
     }
 }
 
-/// Whether one of the attributes at the end is `macro_export`.
+/// Whether one of the attributes at the end is `macro_export`: then the macro is there at the
+/// crate's root, wherever it is declared.
 pub fn is_exported(before: &[TokenTree]) -> bool {
     let attributes = before.rchunks(2).map_while(|pair| match pair {
         [mark, TokenTree::Group(group)] if is(Some(mark), '#') => Some(group.stream().to_string()),
@@ -192,10 +193,6 @@ pub fn is_variable(name: &Ident, next: Option<&TokenTree>) -> bool {
 }
 
 /// Whether `'` is before it.
-pub fn is_lifetime(tokens: &[TokenTree], at: usize) -> bool {
-    before(tokens, at, "'")
-}
-
 /// The tokens of a group.
 pub fn inside(group: &Group) -> Vec<TokenTree> {
     group.stream().into_iter().collect()
@@ -209,7 +206,7 @@ pub fn braces(token: Option<&TokenTree>) -> Option<&Group> {
     }
 }
 
-/// Whether it is this mark.
+/// Whether it is this mark, one of those that `::` and the like consist of.
 pub fn is(token: Option<&TokenTree>, mark: char) -> bool {
     matches!(token, Some(TokenTree::Punct(punct)) if punct.as_char() == mark)
 }
@@ -233,7 +230,7 @@ pub fn text(name: &Ident) -> String {
     name.to_string().trim_start_matches("r#").to_string()
 }
 
-/// Where a name is.
+/// The line where a name is, from 1.
 pub fn line(name: &Ident) -> usize {
     name.span().start().line
 }

@@ -1,6 +1,5 @@
 //! Where a program to compare comes from.
 
-use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,16 +15,6 @@ pub enum Source {
     Revision(String),
     /// The code as it is here.
     WorkingTree,
-}
-
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File(path) => path.display().fmt(f),
-            Self::Revision(commit) => write!(f, "revision {commit}"),
-            Self::WorkingTree => f.write_str("working tree"),
-        }
-    }
 }
 
 impl Source {

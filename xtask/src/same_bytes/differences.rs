@@ -13,6 +13,7 @@ const LINES: [usize; 2] = [3, 12];
 type Values = BTreeMap<(String, usize), String>;
 
 /// Files that are counted together.
+#[derive(Default)]
 pub struct Group<'a> {
     name: &'a str,
     /// What is counted.
@@ -34,11 +35,7 @@ impl<'a> Group<'a> {
             name,
             unit,
             ignore,
-            count: 0,
-            bytes: 0,
-            differ: 0,
-            excused: 0,
-            lines: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -52,7 +49,9 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// Takes a file of both sides, CSV or JSON; None where a side does not have it.
+    /// Takes a file of both sides, CSV or JSON; None where a side does not have it. Bytes that
+    /// differ although no value does are a difference that nothing excuses; beside an excused
+    /// one the layout, such as the order of keys, is not looked at.
     pub fn add(&mut self, file: &str, base: Option<&[u8]>, new: Option<&[u8]>) {
         self.count += 1;
         self.bytes += base.map_or(0, <[u8]>::len);
@@ -112,7 +111,8 @@ impl<'a> Group<'a> {
         [head].into_iter().chain(shown).chain(more).collect()
     }
 
-    /// Prints them. Whether nothing differs but what may.
+    /// Prints counts and differences, the latter only as many as are read.
+    /// Whether nothing differs but what may.
     pub fn print(&self) -> bool {
         println!("{}", self.report().join("\n"));
         self.differ == 0
