@@ -145,61 +145,48 @@ pub(crate) unsafe fn fill<S: Storage>(
     Ok(())
 }
 
+/// The content of a storage that is filled.
+unsafe fn content<S: Storage>(
+    storage: *const S,
+) -> Result<*mut MaybeUninit<S::Content>, StratumResult> {
+    check(storage)?;
+    let slot = storage.cast_mut().cast::<Slot<S::Content>>();
+    // SAFETY: as in `fill`.
+    unsafe {
+        match (&raw const (*slot).magic).read() == S::MAGIC {
+            true => Ok(&raw mut (*slot).content),
+            false => Err(STRATUM_ERROR_UNINITIALISED),
+        }
+    }
+}
+
 /// What a storage holds.
 pub(crate) unsafe fn held<'a, S: Storage>(
     storage: *const S,
 ) -> Result<&'a S::Content, StratumResult> {
-    check(storage)?;
-    let slot = storage.cast::<Slot<S::Content>>();
-    // SAFETY: as in `fill`; the magic word is read first, and with it `fill` has
-    // written the content.
-    unsafe {
-        if (&raw const (*slot).magic).read() == S::MAGIC {
-            Ok((*slot).content.assume_init_ref())
-        } else {
-            Err(STRATUM_ERROR_UNINITIALISED)
-        }
-    }
+    // SAFETY: with the magic word `fill` has written the content.
+    unsafe { Ok((*content(storage)?).assume_init_ref()) }
 }
 
 /// What a storage holds, to change it.
 pub(crate) unsafe fn held_mut<'a, S: Storage>(
     storage: *mut S,
 ) -> Result<&'a mut S::Content, StratumResult> {
-    check(storage)?;
-    let slot = storage.cast::<Slot<S::Content>>();
     // SAFETY: as in `held`; nobody else uses the storage during the call.
-    unsafe {
-        if (&raw const (*slot).magic).read() == S::MAGIC {
-            Ok((*slot).content.assume_init_mut())
-        } else {
-            Err(STRATUM_ERROR_UNINITIALISED)
-        }
-    }
+    unsafe { Ok((*content(storage)?).assume_init_mut()) }
 }
 
 /// Whether a C string is `expected`; reads no further than the first difference.
 pub(crate) unsafe fn is_name(name: *const c_char, expected: &CStr) -> Result<bool, StratumResult> {
     check(name)?;
+    let name = name.cast::<u8>();
     for (i, &byte) in expected.to_bytes_with_nul().iter().enumerate() {
         // SAFETY: all bytes before were equal and none of them was the end.
-        if unsafe { name.add(i).read() }.cast_unsigned_byte() != byte {
+        if unsafe { name.add(i).read() } != byte {
             return Ok(false);
         }
     }
     Ok(true)
-}
-
-/// `c_char` is signed on some targets only.
-trait Byte {
-    fn cast_unsigned_byte(self) -> u8;
-}
-
-impl Byte for c_char {
-    #[allow(clippy::unnecessary_cast)] // not where c_char is i8
-    fn cast_unsigned_byte(self) -> u8 {
-        self as u8
-    }
 }
 
 /// Writes a text, cut to `size` bytes and always ended by a zero.

@@ -106,11 +106,8 @@ const _: () = assert!(rise(CONFIG_ERRORS, 128, i32::MAX - 1));
 
 /// The row of a code, if there is one.
 fn row(code: StratumResult) -> Option<&'static Constant> {
-    TABLE
-        .iter()
-        .copied()
-        .flatten()
-        .find(|row| row.number == code)
+    let mut rows = TABLE.into_iter().flatten();
+    rows.find(|row| row.number == code)
 }
 
 pub(crate) fn name(code: StratumResult) -> &'static CStr {
@@ -121,18 +118,11 @@ pub(crate) fn text(code: StratumResult) -> &'static CStr {
     row(code).map_or(c"no such code", |row| row.text)
 }
 
-fn of_arm(error: &ArmError) -> StratumResult {
-    match error {
-        ArmError::NonFinite { .. } => STRATUM_CONFIG_ARM_NON_FINITE,
-        ArmError::NotPositive { .. } => STRATUM_CONFIG_ARM_NOT_POSITIVE,
-        ArmError::ImpossibleInertia { .. } => STRATUM_CONFIG_ARM_INERTIA,
-        _ => STRATUM_CONFIG_OTHER,
-    }
-}
-
 pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
     match error {
-        ConfigError::Arm(error) => of_arm(error),
+        ConfigError::Arm(ArmError::NonFinite { .. }) => STRATUM_CONFIG_ARM_NON_FINITE,
+        ConfigError::Arm(ArmError::NotPositive { .. }) => STRATUM_CONFIG_ARM_NOT_POSITIVE,
+        ConfigError::Arm(ArmError::ImpossibleInertia { .. }) => STRATUM_CONFIG_ARM_INERTIA,
         ConfigError::Levels { .. } => STRATUM_CONFIG_LEVELS,
         ConfigError::Rows { .. } => STRATUM_CONFIG_ROWS,
         ConfigError::PointOffset { .. } => STRATUM_CONFIG_POINT_OFFSET,

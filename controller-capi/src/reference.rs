@@ -84,15 +84,14 @@ impl From<&Target<Scalar>> for StratumReference {
                 orientation: [1.0, 0.0, 0.0, 0.0],
                 dx: vector(dx),
                 ddx: vector(ddx),
-                reserved: 0,
+                ..Self::default()
             },
             Target::Orientation { q, w, dw } => Self {
                 kind: STRATUM_TARGET_ORIENTATION,
-                x: [0.0; 3],
                 orientation: q.map(Real::to_f64).into(),
                 dx: vector(w),
                 ddx: vector(dw),
-                reserved: 0,
+                ..Self::default()
             },
         }
     }

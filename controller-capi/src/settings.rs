@@ -260,26 +260,17 @@ impl StratumLevel {
     /// The task of the level with this number. Link and axes that no task can have are
     /// refused here: the core has no words for them.
     fn task(&self, level: usize) -> Result<Task, Refusal> {
-        let refused = |code, thing, value, allowed| {
-            Refusal::Number(Number {
-                code,
-                level,
-                thing,
-                value,
-                allowed,
-            })
-        };
         let link = usize::try_from(self.link).ok().and_then(Link::from_number);
         let link = link.ok_or_else(|| {
             let code = codes::STRATUM_CONFIG_POINT_LINK;
-            refused(code, "link", self.link, [1, DOF as u32])
+            number(level, code, "link", self.link, [1, DOF as u32])
         })?;
         let axes = Axes::from_bits(self.axes).ok_or_else(|| {
             let code = match self.axes {
                 0 => codes::STRATUM_CONFIG_NO_AXIS,
                 _ => codes::STRATUM_CONFIG_CHOICE,
             };
-            refused(code, "axes", self.axes, [1, 7])
+            number(level, code, "axes", self.axes, [1, 7])
         })?;
         let gains = TaskGains {
             stiffness: self.stiffness,
@@ -289,7 +280,13 @@ impl StratumLevel {
         match self.task {
             STRATUM_TASK_POSITION => Ok(Task::position(LinkPoint { link, offset }, axes, gains)),
             STRATUM_TASK_ORIENTATION => Ok(Task::orientation(link, axes, gains)),
-            value => Err(refused(codes::STRATUM_CONFIG_CHOICE, "task", value, [0, 1])),
+            value => Err(number(
+                level,
+                codes::STRATUM_CONFIG_CHOICE,
+                "task",
+                value,
+                [0, 1],
+            )),
         }
     }
 }
@@ -363,7 +360,7 @@ impl StratumSettings {
             dead_cycles: u8::try_from(self.dead_cycles).map_err(|_| {
                 let allowed = [0, u32::from(DEAD_CYCLES_MAX)];
                 let code = codes::STRATUM_CONFIG_DEAD_CYCLES;
-                number(code, "dead_cycles", self.dead_cycles, allowed)
+                number(0, code, "dead_cycles", self.dead_cycles, allowed)
             })?,
         })
     }
@@ -376,7 +373,7 @@ impl StratumSettings {
         let used = tasks.get_mut(..count).filter(|used| !used.is_empty());
         let used = used.ok_or_else(|| {
             let (code, allowed) = (codes::STRATUM_CONFIG_LEVELS, [1, STRATUM_LEVELS as u32]);
-            number(code, "level_count", self.level_count, allowed)
+            number(0, code, "level_count", self.level_count, allowed)
         })?;
         for (number, (task, level)) in (1..).zip(used.iter_mut().zip(&self.levels)) {
             *task = level.task(number)?;
@@ -385,11 +382,17 @@ impl StratumSettings {
     }
 }
 
-/// A whole number of the settings as a whole.
-fn number(code: StratumResult, thing: &'static str, value: u32, allowed: [u32; 2]) -> Refusal {
+/// A whole number outside its range, of a level or of the settings as a whole.
+fn number(
+    level: usize,
+    code: StratumResult,
+    thing: &'static str,
+    value: u32,
+    allowed: [u32; 2],
+) -> Refusal {
     Refusal::Number(Number {
         code,
-        level: 0,
+        level,
         thing,
         value,
         allowed,
@@ -398,5 +401,5 @@ fn number(code: StratumResult, thing: &'static str, value: u32, allowed: [u32; 2
 
 /// A choice that does not exist.
 fn choice(thing: &'static str, value: u32, max: u32) -> Refusal {
-    number(codes::STRATUM_CONFIG_CHOICE, thing, value, [0, max])
+    number(0, codes::STRATUM_CONFIG_CHOICE, thing, value, [0, max])
 }

@@ -7,11 +7,12 @@ mod ethernet;
 mod fpga;
 mod host_file;
 mod lan9118;
+mod register;
 mod stack;
 mod uart;
 
 pub use ethernet::{Ethernet, Memory, PORT, Trouble};
-pub use fpga::{Button, Counter, Led, instructions};
+pub use fpga::{Counter, Led, instructions};
 pub use host_file::{HostFile, HostSwitch};
 pub use stack::high_water;
 pub use uart::Uart;

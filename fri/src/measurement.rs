@@ -324,36 +324,8 @@ pub struct Drives {
 impl Default for Measurement {
     /// An interface that is off; frames, matrices and positions zero.
     fn default() -> Self {
-        Self {
-            header: Header::default(),
-            user: UserData::default(),
-            timestamp_s: 0.0,
-            state: InterfaceState::Off,
-            quality: Quality::Unacceptable,
-            period_s: 0.0,
-            command_period_s: 0.0,
-            safety_limits: 0.0,
-            statistics: Statistics::default(),
-            drives: Drives {
-                power: 0,
-                control: ControlScheme::Other,
-                error: 0,
-                warning: 0,
-                temperature: [0.0; DOF],
-            },
-            joint_position: [0.0; DOF],
-            frame: [0.0; 12],
-            commanded_position: [0.0; DOF],
-            fri_offset: [0.0; DOF],
-            commanded_frame: [0.0; 12],
-            fri_frame_offset: [0.0; 12],
-            joint_torque: [0.0; DOF],
-            external_torque: [0.0; DOF],
-            external_wrench: [0.0; 6],
-            jacobian: [[0.0; DOF]; 6],
-            mass_matrix: [[0.0; DOF]; DOF],
-            gravity: [0.0; DOF],
-        }
+        // Every code and number 0.
+        Self::parse(&MeasurementPacket { bytes: [0; LEN] })
     }
 }
 
@@ -460,10 +432,9 @@ impl Measurement {
     /// before command state.
     #[must_use]
     pub fn total_commanded_position(&self) -> [f32; DOF] {
-        let pairs = self.commanded_position.iter().zip(&self.fri_offset);
-        let mut total = [0.0; DOF];
-        for (total, (own, offset)) in total.iter_mut().zip(pairs) {
-            *total = own + offset;
+        let mut total = self.commanded_position;
+        for (total, offset) in total.iter_mut().zip(self.fri_offset) {
+            *total += offset;
         }
         total
     }

@@ -3,23 +3,20 @@
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use crate::tools::{Need, Outcome, Tools, failed};
+use crate::tools::{DEFMT, Outcome, QEMU, emulate, find, good, image};
 
 /// Runs it and decodes what it logs.
 pub fn run() -> Outcome {
-    let tools = Tools::find(&[Need::Emulator, Need::LogDecoder])?;
-    let image = tools.image("arm", &[])?;
-    let output = tools.emulate(&image, &[])?;
-    let mut decoder = Command::new("defmt-print");
+    find(&[QEMU, DEFMT])?;
+    let image = image("arm", "")?;
+    let output = emulate(&image, &[])?;
+    let mut decoder = Command::new(DEFMT);
     decoder.arg("-e").arg(&image).stdin(Stdio::piped());
-    let mut decoder = decoder.stdout(Stdio::piped()).spawn()?;
+    let mut decoder = decoder.spawn()?;
     if let Some(mut stdin) = decoder.stdin.take() {
         stdin.write_all(&output.stdout)?;
     }
-    let log = decoder.wait_with_output()?;
-    print!("{}", String::from_utf8_lossy(&log.stdout));
-    if !output.status.success() {
-        return Err(failed("the application", &output));
-    }
-    Ok(log.status.success())
+    let decoded = decoder.wait()?;
+    good("the application", &output)?;
+    Ok(decoded.success())
 }

@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use crate::figures::Figures;
 use crate::stack::{Below, CallGraph};
-use crate::tools::{Need, Outcome, Tools, Trouble, failed, first_line, llvm_tool, qemu_version};
-use crate::{host, limits, table};
+use crate::tools::{LLVM, Outcome, QEMU, Trouble};
+use crate::tools::{emulate, find, first_line, good, image, llvm_tool, root, run as output_of};
+use crate::{host, limits, table, tools};
 
 const JSON: &str = "docs/timing.json";
 const TABLE: &str = "docs/timing.md";
@@ -23,37 +23,25 @@ const ALLOWANCE: f64 = 0.02;
 
 /// Measures; compares with limits and committed figures, or writes them anew.
 pub fn run(write: bool) -> Outcome {
-    let tools = Tools::find(&[Need::Emulator, Need::LlvmTools])?;
-    let valgrind = if write {
-        host::count(&tools.root)?
-    } else {
-        None
-    };
-    let mut figures = measure(&tools)?;
+    find(&[QEMU, LLVM])?;
+    let valgrind = if write { host::count()? } else { None };
+    let mut figures = measure()?;
     print!("{}", table::summary(&figures));
-    let (json, text) = (tools.root.join(JSON), tools.root.join(TABLE));
-    let committed = fs::read_to_string(&json)
-        .map_err(Trouble::from)
-        .and_then(|text| {
-            serde_json::from_str::<Figures>(&text)
-                .map_err(|error| Trouble::Content(format!("{JSON}: {error}")))
-        });
+    let path = root().join(JSON);
+    let committed = fs::read_to_string(&path).map_err(Trouble::from);
+    let committed = committed.and_then(|text| Ok(serde_json::from_str::<Figures>(&text)?));
 
     let mut lines = limits::exceeded(&figures);
     if lines.is_empty() {
         println!("no figure is beyond its limit");
     }
     if write {
-        let before = committed
-            .ok()
-            .and_then(|mut old| old.tools.remove("valgrind"));
-        if let Some(version) = valgrind.or(before) {
+        let before = || committed.ok()?.tools.remove("valgrind");
+        if let Some(version) = valgrind.or_else(before) {
             figures.tools.insert("valgrind".into(), version);
         }
-        let data = serde_json::to_string_pretty(&figures)
-            .map_err(|error| Trouble::Content(error.to_string()))?;
-        fs::write(&json, data + "\n")?;
-        fs::write(&text, table::page(&figures))?;
+        fs::write(&path, serde_json::to_string_pretty(&figures)? + "\n")?;
+        fs::write(root().join(TABLE), table::page(&figures))?;
         println!("written: {JSON}, {TABLE}");
     } else {
         let committed = committed?;
@@ -74,30 +62,28 @@ pub fn run(write: bool) -> Outcome {
     Ok(lines.is_empty())
 }
 
-fn measure(tools: &Tools) -> Result<Figures, Trouble> {
-    let image = tools.image("bench", &[])?;
-    let output = tools.emulate(&image, &["-icount", "shift=10,sleep=off"])?;
-    if !output.status.success() {
-        return Err(failed("the image bench", &output));
-    }
-    let said = String::from_utf8_lossy(&output.stdout);
-    let here: Vec<&str> = said
-        .lines()
+fn measure() -> Result<Figures, Trouble> {
+    let bench = image("bench", "")?;
+    let output = emulate(&bench, &["-icount", "shift=10,sleep=off"])?;
+    let said = good("the image bench", &output)?;
+    let here: Vec<&str> = (said.lines())
         .filter(|line| line.starts_with("inputs"))
         .collect();
-    let host = tools.host("bench", &[])?;
+    let host = tools::host("bench", &[])?;
     if here != host.lines().collect::<Vec<_>>() {
-        let text = format!("torques differ:\nhost:\n{host}target:\n{}", here.join("\n"));
-        return Err(Trouble::Content(text));
+        let here = here.join("\n");
+        return Err(Trouble::new(format!(
+            "torques differ:\nhost:\n{host}target:\n{here}"
+        )));
     }
 
     let mut figures = Figures::parse(&said)?;
-    let graph = CallGraph::of(&image)?;
+    let graph = CallGraph::of(&bench)?;
     for controller in &mut figures.controllers {
         let precision = &controller.precision;
         let cycle = graph.below(&format!("cycle_{precision}"))?;
         let init = graph.below(&format!("build_{precision}"))?;
-        if controller.job == EXPLAINED {
+        if controller.experiment == EXPLAINED {
             explain(&format!("cycle {precision}"), &cycle);
             explain(&format!("constructor {precision}"), &init);
         }
@@ -105,17 +91,23 @@ fn measure(tools: &Tools) -> Result<Figures, Trouble> {
         controller.stack.cycle_bound = cycle.stack.ok();
         controller.stack.init_bound = init.stack.ok();
     }
-    figures.core_flash = core_flash(tools)?;
-    figures.host = host::counts(&tools.root)?;
-    figures.peers = host::peers(&tools.root)?;
-    figures.image = memory(&tools.image("arm", &[])?)?;
+    // Flash of constructor, cycle and record alone: the image with them less the one without.
+    let flash = |features: &str| Ok(memory(&image("footprint", features)?)?["flash"]);
+    let empty: u64 = flash("")?;
+    for precision in ["f64", "f32"] {
+        let full: Result<u64, Trouble> = flash(&format!("footprint-{precision}"));
+        figures
+            .core_flash
+            .insert(precision.into(), full?.saturating_sub(empty));
+    }
+    figures.host = host::counts()?;
+    figures.peers = host::peers()?;
+    figures.image = memory(&image("arm", "")?)?;
+    let profile = "release; target-cpu=cortex-m7, host: x86-64-v3";
     figures.tools = BTreeMap::from([
         ("rustc".into(), first_line("rustc", &["--version"])?),
-        ("qemu".into(), qemu_version()?),
-        (
-            "profile".into(),
-            "release; target-cpu=cortex-m7, host: x86-64-v3".into(),
-        ),
+        ("qemu".into(), first_line(QEMU, &["--version"])?),
+        ("profile".into(), profile.into()),
     ]);
     Ok(figures)
 }
@@ -133,34 +125,21 @@ fn explain(what: &str, below: &Below) {
     }
 }
 
-/// Flash of constructor, cycle and record alone: the image `footprint` with them less
-/// the one without.
-fn core_flash(tools: &Tools) -> Result<BTreeMap<String, u64>, Trouble> {
-    let flash = |features: &[&str]| -> Result<u64, Trouble> {
-        let sizes = memory(&tools.image("footprint", features)?)?;
-        Ok(sizes.get("flash").copied().unwrap_or(0))
-    };
-    let empty = flash(&[])?;
-    let mut sizes = BTreeMap::new();
-    for (precision, feature) in [("f64", "footprint-f64"), ("f32", "footprint-f32")] {
-        sizes.insert(precision.into(), flash(&[feature])?.saturating_sub(empty));
-    }
-    Ok(sizes)
-}
-
 /// Flash and RAM of an image.
 fn memory(image: &Path) -> Result<BTreeMap<String, u64>, Trouble> {
-    let output = Command::new(llvm_tool("llvm-size")?)
-        .arg("-A")
-        .arg(image)
-        .output()?;
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = output_of(llvm_tool("llvm-size")?.arg("-A").arg(image))?;
     let section = |name: &str| {
+        let words = |line: &str| {
+            line.split_whitespace()
+                .map(str::to_string)
+                .collect::<Vec<_>>()
+        };
         let line = text
             .lines()
-            .find_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
-        let size = line.and_then(|rest| rest.split_whitespace().next()?.parse::<u64>().ok());
-        size.unwrap_or(0)
+            .map(words)
+            .find(|it| it.first().is_some_and(|it| it == name));
+        line.and_then(|words| words.get(1)?.parse().ok())
+            .unwrap_or(0)
     };
     let flash = [".vector_table", ".text", ".rodata", ".data", ".gnu.sgstubs"];
     let ram = [".data", ".bss", ".uninit"];

@@ -3,10 +3,10 @@
 
 use std::fs;
 use std::io::{self, BufRead, BufReader};
-use std::path::PathBuf;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Stdio};
 
-use crate::tools::{QEMU, Tools, Trouble};
+use crate::tools::{Trouble, image, qemu, work};
 
 /// Port on which the emulated board is reached, and of `hil-sim serve`.
 const PORT: &str = "49938";
@@ -24,33 +24,26 @@ pub enum Medium {
 pub struct Board {
     process: Child,
     said: BufReader<ChildStdout>,
-    /// Files that the image looks for.
+    /// Files that the image looks for: emergency stop, serial port.
     switches: [PathBuf; 2],
 }
 
 impl Board {
     /// Builds the image and starts it.
-    pub fn start(tools: &Tools, medium: Medium) -> Result<Self, Trouble> {
-        let image = tools.image("fri", &[])?;
-        let switches = [stop_file(tools), tools.work.join("fri-serial")];
+    pub fn start(medium: Medium) -> Result<Self, Trouble> {
+        let mut qemu = qemu(&image("fri", "")?)?;
+        let work = work()?;
+        let switches = ["e-stop", "fri-serial"].map(|name| work.join(name));
         // A stale one would count.
-        remove(&switches)?;
-        let mut qemu = Command::new(QEMU);
-        qemu.args(["-M", "mps2-an500", "-display", "none", "-monitor", "none"]);
-        qemu.args(["-semihosting-config", "enable=on,target=native"]);
-        match medium {
-            Medium::Serial => {
-                fs::write(&switches[1], "")?;
-                qemu.args(["-serial", "pty"]);
-            }
-            Medium::Ethernet => {
-                let forward = format!("hostfwd=udp:127.0.0.1:{PORT}-10.0.2.15:{PORT}");
-                qemu.args(["-serial", "null", "-nic"]);
-                qemu.arg(format!("user,model=lan9118,{forward}"));
-            }
+        remove(&switches);
+        if medium == Medium::Serial {
+            fs::write(&switches[1], "")?;
+            qemu.args(["-serial", "pty"]);
+        } else {
+            let forward = format!("hostfwd=udp:127.0.0.1:{PORT}-10.0.2.15:{PORT}");
+            qemu.args(["-serial", "null", "-nic"]);
+            qemu.arg(format!("user,model=lan9118,{forward}"));
         }
-        qemu.arg("-kernel").arg(&image).current_dir(&tools.work);
-        qemu.stdin(Stdio::null());
         let mut process = qemu.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
         if let Some(errors) = process.stderr.take() {
             std::thread::spawn(move || {
@@ -68,6 +61,11 @@ impl Board {
             said: BufReader::new(said),
             switches,
         })
+    }
+
+    /// The emergency stop is pulled while this file exists.
+    pub fn stop_file(&self) -> &Path {
+        &self.switches[0]
     }
 
     /// The next line that the board says; none once it has ended.
@@ -90,13 +88,8 @@ impl Drop for Board {
         // Has ended already, or is of no more use.
         let _ = self.process.kill();
         let _ = self.process.wait();
-        let _ = remove(&self.switches);
+        remove(&self.switches);
     }
-}
-
-/// The emergency stop is pulled while this file exists.
-pub fn stop_file(tools: &Tools) -> PathBuf {
-    tools.work.join("e-stop")
 }
 
 /// What to give `hil-sim serve`, from a line that names the board's address or device.
@@ -112,11 +105,9 @@ pub fn serve_options(line: &str) -> Option<Vec<String>> {
     }
 }
 
-fn remove(files: &[PathBuf]) -> io::Result<()> {
+fn remove(files: &[PathBuf]) {
     for file in files {
-        if file.exists() {
-            fs::remove_file(file)?;
-        }
+        // Need not be there.
+        let _ = fs::remove_file(file);
     }
-    Ok(())
 }

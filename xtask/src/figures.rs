@@ -34,8 +34,8 @@ pub struct Figures {
 /// One controller in one precision.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Controller {
-    /// Scenario.
-    pub job: String,
+    /// Its scenario.
+    pub experiment: String,
     /// f64 or f32.
     pub precision: String,
     /// Full cycle \[instructions\].
@@ -90,70 +90,84 @@ pub struct Stack {
     pub cycle_bound: Option<u64>,
 }
 
+impl Controller {
+    /// Experiment and precision.
+    pub fn name(&self) -> String {
+        format!("{} {}", self.experiment, self.precision)
+    }
+}
+
 impl Figures {
     /// From the lines of the image `bench`.
     pub fn parse(lines: &str) -> Result<Self, Trouble> {
         let mut figures = Self::default();
         for line in lines.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
-            figures.read(&words).ok_or_else(|| {
-                Trouble::Content(format!("the image said what is not understood: {line}"))
-            })?;
+            let wrong = || Trouble::new(format!("the image said what is not understood: {line}"));
+            figures.read(&words).ok_or_else(wrong)?;
         }
         Ok(figures)
     }
 
     fn read(&mut self, words: &[&str]) -> Option<()> {
+        let number = |word: &str| word.parse::<u64>().ok();
         match *words {
             ["calibration", _] => {}
             [
                 "inputs",
-                job,
+                experiment,
                 precision,
                 count,
                 "faults",
                 "0",
-                "saturated",
-                saturated,
-                "deficient",
-                deficient,
-                "checksum",
-                checksum,
+                ref rest @ ..,
             ] => {
-                self.inputs = count.parse().ok()?;
+                let [
+                    "saturated",
+                    saturated,
+                    "deficient",
+                    deficient,
+                    "checksum",
+                    checksum,
+                ] = *rest
+                else {
+                    return None;
+                };
+                self.inputs = number(count)?;
                 self.controllers.push(Controller {
-                    job: job.into(),
+                    experiment: experiment.into(),
                     precision: precision.into(),
-                    saturated: saturated.parse().ok()?,
-                    deficient: deficient.parse().ok()?,
+                    saturated: number(saturated)?,
+                    deficient: number(deficient)?,
                     checksum: checksum.into(),
                     ..Controller::default()
                 });
             }
-            ["cost", _, _, min, max, worst, ref name @ ..] => {
-                let cost = Cost {
-                    min: min.parse().ok()?,
-                    max: max.parse().ok()?,
-                    worst: worst.into(),
-                };
-                let controller = self.controllers.last_mut()?;
-                match name.join(" ") {
-                    name if name == "cycle" => controller.cycle = cost,
-                    name => controller.stages.push(Stage { name, cost }),
-                }
-            }
-            ["worst", _, _, ref input @ ..] => {
-                self.controllers.last_mut()?.worst_input = input.join(" ");
-            }
-            ["stack", _, _, "init", init, "cycle", cycle] => {
-                let stack = &mut self.controllers.last_mut()?.stack;
-                stack.init_seen = init.parse().ok()?;
-                stack.cycle_seen = cycle.parse().ok()?;
-            }
             ["size", precision, ref pairs @ ..] => {
                 let sizes = self.sizes.entry(precision.into()).or_default();
                 for pair in pairs.chunks_exact(2) {
-                    sizes.insert(pair[0].into(), pair[1].parse().ok()?);
+                    sizes.insert(pair[0].into(), number(pair[1])?);
+                }
+            }
+            [kind, _, _, ref rest @ ..] => {
+                let controller = self.controllers.last_mut()?;
+                match (kind, rest) {
+                    ("cost", [min, max, worst, name @ ..]) => {
+                        let name = name.join(" ");
+                        let (min, max, worst) = (number(min)?, number(max)?, worst.to_string());
+                        let cost = Cost { min, max, worst };
+                        if name == "cycle" {
+                            controller.cycle = cost;
+                        } else {
+                            controller.stages.push(Stage { name, cost });
+                        }
+                    }
+                    ("worst", input) => controller.worst_input = input.join(" "),
+                    ("stack", ["init", init, "cycle", cycle]) => {
+                        controller.stack.init_seen = number(init)?;
+                        controller.stack.cycle_seen = number(cycle)?;
+                    }
+                    _ => return None,
                 }
             }
             _ => return None,
@@ -161,64 +175,55 @@ impl Figures {
         Some(())
     }
 
-    /// Size of a type \[bytes\].
-    pub fn size(&self, precision: &str, name: &str) -> Option<u64> {
-        self.sizes.get(precision)?.get(name).copied()
+    /// Size of a type in the controller's precision \[bytes\].
+    pub fn size(&self, controller: &Controller, name: &str) -> Option<u64> {
+        self.sizes.get(&controller.precision)?.get(name).copied()
     }
 
     /// What a cycle needs to run besides controller, input and output: state and stack
     /// together \[bytes\].
     pub fn working_memory(&self, controller: &Controller) -> Option<u64> {
-        let state = self.size(&controller.precision, "state")?;
-        Some(state + controller.stack.cycle_bound?)
+        Some(self.size(controller, "state")? + controller.stack.cycle_bound?)
     }
 
     /// Every figure that must not grow, by name.
     pub fn bounded(&self) -> BTreeMap<String, u64> {
         let mut all = BTreeMap::new();
+        let mut add = |of: &str, what: &str, value| all.insert(format!("{of}: {what}"), value);
+        // A bound that is lost is worse than any.
+        let bound = |bytes: Option<u64>| bytes.unwrap_or(u64::MAX);
         for controller in &self.controllers {
-            let of = format!("{} {}", controller.job, controller.precision);
-            all.insert(format!("{of}: cycle, instructions"), controller.cycle.max);
-            for stage in &controller.stages {
-                all.insert(
-                    format!("{of}: {}, instructions", stage.name),
-                    stage.cost.max,
-                );
+            let (of, stack) = (&controller.name(), &controller.stack);
+            add(of, "cycle, instructions", controller.cycle.max);
+            for Stage { name, cost } in &controller.stages {
+                add(of, &format!("{name} alone, instructions"), cost.max);
             }
-            let stack = &controller.stack;
-            all.insert(
-                format!("{of}: stack of the cycle seen, bytes"),
-                stack.cycle_seen,
+            add(of, "stack of the cycle seen, bytes", stack.cycle_seen);
+            add(of, "stack of the constructor seen, bytes", stack.init_seen);
+            add(
+                of,
+                "stack bound of the cycle, bytes",
+                bound(stack.cycle_bound),
             );
-            all.insert(
-                format!("{of}: stack of construction seen, bytes"),
-                stack.init_seen,
+            add(
+                of,
+                "stack bound of the constructor, bytes",
+                bound(stack.init_bound),
             );
-            for (what, bound) in [
-                ("cycle", stack.cycle_bound),
-                ("construction", stack.init_bound),
-            ] {
-                // A bound that is lost is worse than any.
-                all.insert(
-                    format!("{of}: stack bound of {what}, bytes"),
-                    bound.unwrap_or(u64::MAX),
-                );
-            }
-            all.insert(format!("{of}: code of the cycle, bytes"), controller.code);
+            let working = bound(self.working_memory(controller));
+            add(of, "state and stack of the cycle, bytes", working);
+            add(of, "code of the cycle, bytes", controller.code);
         }
         for (precision, sizes) in &self.sizes {
             for (name, &bytes) in sizes {
-                all.insert(format!("{precision}: {name}, bytes"), bytes);
+                add(precision, &format!("{name}, bytes"), bytes);
             }
         }
         for (precision, &bytes) in &self.core_flash {
-            all.insert(
-                format!("{precision}: flash of the linked core, bytes"),
-                bytes,
-            );
+            add(precision, "flash of the linked core, bytes", bytes);
         }
         for (name, &bytes) in &self.image {
-            all.insert(format!("application image: {name}, bytes"), bytes);
+            add("application image", &format!("{name}, bytes"), bytes);
         }
         all
     }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
 use crate::board::{self, Board, Medium};
-use crate::tools::{Need, Outcome, Tools, Trouble, failed};
+use crate::tools::{Outcome, QEMU, Trouble, find, program, run as output_of, work};
 
 /// Motion over the serial line \[s\]: the emulated port takes about 40 ms for the
 /// bytes of a cycle.
@@ -16,22 +16,23 @@ const SERIAL_S: &str = "1";
 /// over the serial line the beginning of the motion, a minute's work for the emulator.
 /// Each check prints what it saw.
 pub fn run(medium: Medium) -> Outcome {
-    let tools = Tools::find(&[Need::Emulator])?;
-    let bench = Bench::new(&tools)?;
-    match medium {
-        Medium::Ethernet => {
-            let whole = bench.whole()?;
-            let stopped = bench.emergency_stop()?;
-            let gone = bench.silence()?;
-            Ok(whole && stopped && gone)
-        }
-        Medium::Serial => bench.serial(),
+    find(&[QEMU])?;
+    let bench = Bench::new()?;
+    if medium == Medium::Serial {
+        return bench.serial();
     }
+    let whole = bench.whole()?;
+    let stopped = bench.interrupted("emergency stop", "EmergencyStop", |board, _| {
+        fs::write(board.stop_file(), "")
+    })?;
+    let gone = bench.interrupted("robot taken away", "silent", |_, robot| robot.0.kill())?;
+    Ok(whole && stopped && gone)
 }
 
-struct Bench<'a> {
-    tools: &'a Tools,
+struct Bench {
     hil_sim: PathBuf,
+    /// Where the robot leaves its trace.
+    served: PathBuf,
     /// Trace of the same motion without a board.
     expected: String,
 }
@@ -47,49 +48,35 @@ impl Drop for Robot {
     }
 }
 
-impl<'a> Bench<'a> {
-    fn new(tools: &'a Tools) -> Result<Self, Trouble> {
-        let hil_sim = tools.program("hil-sim")?;
-        let folder = tools.work.join("fri-expected");
-        let output = Command::new(&hil_sim)
-            .args(["run", "two-level", "--measurement", "fri", "--out"])
-            .arg(&folder)
-            .output()?;
-        if !output.status.success() {
-            return Err(failed("hil-sim run two-level --measurement fri", &output));
-        }
+impl Bench {
+    fn new() -> Result<Self, Trouble> {
+        let hil_sim = program("hil-sim", "hil-sim")?;
+        let folder = work()?.join("fri-expected");
+        let mut command = Command::new(&hil_sim);
+        command.args(["run", "two-level", "--measurement", "fri", "--out"]);
+        output_of(command.arg(&folder))?;
         Ok(Self {
-            tools,
             hil_sim,
+            served: work()?.join("fri-served"),
             expected: fs::read_to_string(folder.join("trace.csv"))?,
         })
-    }
-
-    fn folder(&self) -> PathBuf {
-        self.tools.work.join("fri-served")
     }
 
     /// Starts the board, and the robot as soon as the board says where it is.
     fn start(&self, medium: Medium, more: &[&str]) -> Result<(Board, Robot), Trouble> {
         // An old trace would count.
-        if self.folder().exists() {
-            fs::remove_dir_all(self.folder())?;
+        if self.served.exists() {
+            fs::remove_dir_all(&self.served)?;
         }
-        let mut board = Board::start(self.tools, medium)?;
-        let options = loop {
-            let line = board
-                .line()
-                .ok_or_else(|| Trouble::Content("the board ended before it had a link".into()))?;
-            if let Some(options) = board::serve_options(&line) {
-                break options;
-            }
-        };
+        let mut board = Board::start(medium)?;
+        let said = std::iter::from_fn(|| board.line()).find_map(|it| board::serve_options(&it));
+        let none = || Trouble::new("the board ended before it had a link".into());
         let robot = Command::new(&self.hil_sim)
             .args(["serve", "--scenario", "two-level", "--lockstep"])
-            .args(options)
+            .args(said.ok_or_else(none)?)
             .args(more)
             .arg("--out")
-            .arg(self.folder())
+            .arg(&self.served)
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .spawn()?;
@@ -98,7 +85,7 @@ impl<'a> Bench<'a> {
 
     /// The robot's trace against the expected one, over its whole length.
     fn trace(&self) -> Result<(usize, bool), Trouble> {
-        let trace = fs::read_to_string(self.folder().join("trace.csv"))?;
+        let trace = fs::read_to_string(self.served.join("trace.csv"))?;
         let cycles = trace.lines().count().saturating_sub(1);
         Ok((cycles, cycles > 0 && self.expected.starts_with(&trace)))
     }
@@ -106,64 +93,41 @@ impl<'a> Bench<'a> {
     /// The whole motion over Ethernet.
     fn whole(&self) -> Outcome {
         let (mut board, mut robot) = self.start(Medium::Ethernet, &[])?;
-        let mut last = String::new();
-        while let Some(line) = board.line() {
-            last = line;
-        }
+        let last = std::iter::from_fn(|| board.line())
+            .last()
+            .unwrap_or_default();
         let good = board.end()? & robot.0.wait()?.success();
         let (cycles, equal) = self.trace()?;
-        let complete = cycles == self.expected.lines().count().saturating_sub(1);
-        let verdict = if good && equal && complete {
-            "equal"
-        } else {
-            "NOT as"
-        };
+        let good = good && equal && cycles + 1 == self.expected.lines().count();
+        let verdict = if good { "equal" } else { "NOT as" };
         println!(
             "Ethernet: {last}; trace of {cycles} cycles {verdict} to that without a board, in every byte"
         );
-        Ok(good && equal && complete)
+        Ok(good)
     }
 
-    /// Pulls the emergency stop in the middle of the motion.
-    fn emergency_stop(&self) -> Outcome {
-        let (mut board, _robot) = self.start(Medium::Ethernet, &[])?;
+    /// Does something in the middle of the motion: the board has to say `sign`, with safe
+    /// outputs.
+    fn interrupted(
+        &self,
+        what: &str,
+        sign: &str,
+        act: impl Fn(&Board, &mut Robot) -> std::io::Result<()>,
+    ) -> Outcome {
+        let (mut board, mut robot) = self.start(Medium::Ethernet, &[])?;
         let mut seen = None;
         while let Some(line) = board.line() {
             if line.contains(" moving:") {
-                fs::write(board::stop_file(self.tools), "")?;
+                act(&board, &mut robot)?;
             }
-            if line.contains("EmergencyStop") && seen.is_none() {
+            if line.contains(sign) && seen.is_none() {
                 seen = Some(line);
             }
         }
         let success = board.end()?;
-        let line = seen.unwrap_or_else(|| "no emergency stop was seen".into());
-        let safe = line.contains("drives 0 heartbeat 0");
-        println!("emergency stop: {line}; exit code {}", i32::from(!success));
-        Ok(safe && !success)
-    }
-
-    /// Takes the robot away in the middle of the motion.
-    fn silence(&self) -> Outcome {
-        let (mut board, robot) = self.start(Medium::Ethernet, &[])?;
-        let (mut robot, mut seen) = (Some(robot), None);
-        while let Some(line) = board.line() {
-            if line.contains(" moving:") {
-                robot = None;
-            }
-            if line.starts_with("silent") {
-                seen = Some(line);
-            }
-        }
-        drop(robot);
-        let success = board.end()?;
-        let line = seen.unwrap_or_else(|| "no silence was seen".into());
-        let safe = line.contains("drives 0 heartbeat 0");
-        println!(
-            "robot taken away: {line}; exit code {}",
-            i32::from(!success)
-        );
-        Ok(safe && !success)
+        let line = seen.unwrap_or_else(|| "was not seen".into());
+        println!("{what}: {line}; exit code {}", i32::from(!success));
+        Ok(line.contains("drives 0 heartbeat 0") && !success)
     }
 
     /// The beginning of the motion over the serial line.

@@ -3,12 +3,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use crate::tools::{Trouble, failed, first_line};
+use crate::tools::{Trouble, first_line, root, run};
 
 /// Counts cycle and stages under callgrind.
 const SCRIPT: &str = "controller-core/benches/instructions.sh";
@@ -36,52 +35,49 @@ pub struct Peer {
 
 /// Counts anew. Returns the version of the tool, or None where it is not there and
 /// the figures stay what they are.
-pub fn count(root: &Path) -> Result<Option<String>, Trouble> {
+pub fn count() -> Result<Option<String>, Trouble> {
     let Ok(version) = first_line("valgrind", &["--version"]) else {
         println!("no valgrind (apt-get install valgrind): the host's counts stay as committed");
         return Ok(None);
     };
-    let output = Command::new(root.join(SCRIPT)).arg("--update").output()?;
-    print!("{}", String::from_utf8_lossy(&output.stdout));
-    if !output.status.success() {
-        return Err(failed(SCRIPT, &output));
-    }
+    print!(
+        "{}",
+        run(Command::new(root().join(SCRIPT)).arg("--update"))?
+    );
     Ok(Some(version))
 }
 
 /// The committed counts.
-pub fn counts(root: &Path) -> Result<Counts, Trouble> {
-    parse(&fs::read_to_string(root.join(COUNTS))?)
+pub fn counts() -> Result<Counts, Trouble> {
+    parse(&fs::read_to_string(root().join(COUNTS))?)
 }
 
 /// The committed figures of other libraries.
-pub fn peers(root: &Path) -> Result<Vec<Peer>, Trouble> {
-    serde_json::from_str(&fs::read_to_string(root.join(PEERS))?)
-        .map_err(|error| Trouble::Content(format!("{PEERS}: {error}")))
+pub fn peers() -> Result<Vec<Peer>, Trouble> {
+    Ok(serde_json::from_str(&fs::read_to_string(
+        root().join(PEERS),
+    )?)?)
 }
 
 fn parse(text: &str) -> Result<Counts, Trouble> {
     let mut counts = Counts::new();
     for line in text.lines() {
+        let wrong = || Trouble::new(format!("{COUNTS}: what is not understood: {line}"));
         let words: Vec<&str> = line.split_whitespace().collect();
-        let read = || -> Option<(String, String, u64)> {
-            let [case, stage, count] = words[..] else {
-                return None;
-            };
-            let (levels, precision) = case.rsplit_once('-')?;
-            let job = match levels {
-                "2-levels" => "two-level",
-                "3-levels" => "case-1",
-                _ => return None,
-            };
-            let stage = match stage {
-                "step" => "cycle".into(),
-                stage => stage.replace('_', " "),
-            };
-            Some((format!("{job} {precision}"), stage, count.parse().ok()?))
+        let (case, stage, count) = match words[..] {
+            [case, stage, count] => (case, stage, count.parse()?),
+            _ => return Err(wrong()),
         };
-        let (case, stage, count) = read()
-            .ok_or_else(|| Trouble::Content(format!("{COUNTS}: what is not understood: {line}")))?;
+        let (experiment, precision) = match case.split_once("-levels-") {
+            Some(("2", precision)) => ("two-level", precision),
+            Some(("3", precision)) => ("case-1", precision),
+            _ => return Err(wrong()),
+        };
+        let stage = match stage {
+            "step" => "cycle".into(),
+            stage => stage.replace('_', " "),
+        };
+        let case = format!("{experiment} {precision}");
         counts.entry(case).or_default().insert(stage, count);
     }
     Ok(counts)

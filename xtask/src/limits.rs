@@ -1,118 +1,82 @@
 //! Limits that hold whatever the committed figures say.
 
-use crate::figures::{Controller, Figures};
+use crate::figures::Figures;
 
-/// Most stack of cycle or constructor, by the bound from the code \[bytes\].
-pub const STACK: u64 = 12 * 1024;
-
-/// What holds in one precision.
-pub struct OfPrecision {
-    /// f64 or f32.
-    pub name: &'static str,
-    /// Most flash of constructor, cycle and record \[bytes\].
-    pub flash: u64,
-    /// Most state and stack of the cycle together, the stack by its bound \[bytes\].
-    pub working_memory: u64,
-}
-
-/// Both precisions.
-pub const PRECISIONS: [OfPrecision; 2] = [
-    OfPrecision {
-        name: "f64",
-        flash: 61_440,
-        working_memory: 8_560,
-    },
-    OfPrecision {
-        name: "f32",
-        flash: 56_748,
-        working_memory: 4_352,
-    },
-];
-
-/// Most instructions of a cycle on the Cortex-M7, by experiment and precision.
-pub const CYCLE: [(&str, &str, u64); 4] = [
-    ("two-level", "f64", 13_446),
-    ("two-level", "f32", 10_931),
-    ("case-1", "f64", 15_194),
-    ("case-1", "f32", 12_448),
+/// Ends of names of [`Figures::bounded`], and the most that each of those figures may be.
+pub const LIMITS: [(&str, u64); 10] = [
+    ("two-level f64: cycle, instructions", 13_446),
+    ("two-level f32: cycle, instructions", 10_931),
+    ("case-1 f64: cycle, instructions", 15_194),
+    ("case-1 f32: cycle, instructions", 12_448),
+    ("f64: state and stack of the cycle, bytes", 8_560),
+    ("f32: state and stack of the cycle, bytes", 4_352),
+    ("f64: flash of the linked core, bytes", 61_440),
+    ("f32: flash of the linked core, bytes", 56_748),
+    ("stack bound of the cycle, bytes", 12_288),
+    ("stack bound of the constructor, bytes", 12_288),
 ];
 
 /// Smallest to largest instruction count of a cycle: a spread below 0.5 %.
 const SPREAD_PER_MILLE: u64 = 5;
 
-/// One line per figure that is beyond its limit: what, its value, the limit.
+/// One line per figure that is beyond its limit, or that is not there.
 pub fn exceeded(figures: &Figures) -> Vec<String> {
-    let mut lines: Vec<String> = (figures.controllers.iter())
-        .flat_map(|controller| of_controller(figures, controller))
-        .collect();
-    for OfPrecision { name, flash, .. } in PRECISIONS {
-        let what = format!("{name}: flash of the linked core, bytes");
-        lines.extend(above(what, figures.core_flash.get(name).copied(), flash));
-    }
-    lines
-}
-
-fn of_controller(figures: &Figures, controller: &Controller) -> Vec<String> {
-    let Controller {
-        job,
-        precision,
-        cycle,
-        stack,
-        ..
-    } = controller;
-    let of = format!("{job} {precision}");
-    let cycles = CYCLE.iter().find(|(a, b, _)| a == job && b == precision);
-    let bytes = PRECISIONS.iter().find(|limits| limits.name == precision);
+    let bounded = figures.bounded();
     let mut lines = Vec::new();
-    lines.extend(above(
-        format!("{of}: cycle, instructions"),
-        Some(cycle.max),
-        cycles.map_or(0, |(_, _, limit)| *limit),
-    ));
-    if 1000 * (cycle.max - cycle.min) >= SPREAD_PER_MILLE * cycle.min {
-        lines.push(format!(
-            "{of}: cycle takes {} to {} instructions; the spread must be below 0.5 %",
-            cycle.min, cycle.max
-        ));
+    for (end, limit) in LIMITS {
+        let mut measured = bounded
+            .iter()
+            .filter(|(name, _)| name.ends_with(end))
+            .peekable();
+        if measured.peek().is_none() {
+            lines.push(format!("{end}: none, limit {limit}"));
+        }
+        lines.extend(
+            measured
+                .filter(|(_, value)| **value > limit)
+                .map(|(name, value)| {
+                    let value = if *value == u64::MAX {
+                        "none".into()
+                    } else {
+                        value.to_string()
+                    };
+                    format!("{name}: {value}, limit {limit}")
+                }),
+        );
     }
-    lines.extend(above(
-        format!("{of}: state and stack of the cycle, bytes"),
-        figures.working_memory(controller),
-        bytes.map_or(0, |limits| limits.working_memory),
-    ));
-    for (what, bound, seen) in [
-        ("cycle", stack.cycle_bound, stack.cycle_seen),
-        ("constructor", stack.init_bound, stack.init_seen),
-    ] {
-        let name = format!("{of}: stack bound of the {what}, bytes");
-        lines.extend(above(name, bound, STACK));
-        if bound.is_some_and(|bound| bound < seen) {
+    for controller in &figures.controllers {
+        let (of, cycle, stack) = (controller.name(), &controller.cycle, &controller.stack);
+        if 1000 * (cycle.max - cycle.min) >= SPREAD_PER_MILLE * cycle.min {
+            let (min, max) = (cycle.min, cycle.max);
             lines.push(format!(
-                "{of}: stack of the {what} seen is {seen} bytes, above its bound"
+                "{of}: cycle takes {min} to {max} instructions; the spread must be below 0.5 %"
             ));
+        }
+        for (what, bound, seen) in [
+            ("cycle", stack.cycle_bound, stack.cycle_seen),
+            ("constructor", stack.init_bound, stack.init_seen),
+        ] {
+            if bound.is_some_and(|bound| bound < seen) {
+                lines.push(format!(
+                    "{of}: stack of the {what} seen is {seen} bytes, above its bound"
+                ));
+            }
         }
     }
     lines
 }
 
-fn above(what: String, value: Option<u64>, limit: u64) -> Option<String> {
-    match value {
-        Some(value) if value <= limit => None,
-        Some(value) => Some(format!("{what}: {value}, limit {limit}")),
-        None => Some(format!("{what}: none, limit {limit}")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::{Cost, Stack};
+    use crate::figures::{Controller, Cost, Stack};
 
     const STATE: u64 = 1_000;
 
+    /// Of everything that has a limit, the instructions those of `case-1`.
     fn figures(instructions: u64, bound: Option<u64>, flash: u64) -> Figures {
-        let controller = |precision: &str| Controller {
-            job: "case-1".into(),
+        let controller = |experiment: &str, precision: &str| Controller {
+            experiment: experiment.into(),
             precision: precision.into(),
             cycle: Cost {
                 min: instructions - 10,
@@ -126,51 +90,47 @@ mod tests {
             },
             ..Controller::default()
         };
-        let by_precision = |value: u64| {
-            let each = |limits: OfPrecision| (limits.name.to_string(), value);
-            PRECISIONS.map(each)
-        };
-        let sizes = |(precision, state)| (precision, [("state".to_string(), state)].into());
-        Figures {
-            controllers: vec![controller("f64"), controller("f32")],
-            sizes: by_precision(STATE).map(sizes).into(),
-            core_flash: by_precision(flash).into(),
-            ..Figures::default()
+        let mut figures = Figures::default();
+        for precision in ["f64", "f32"] {
+            let state = [("state".to_string(), STATE)].into();
+            figures.sizes.insert(precision.into(), state);
+            figures.core_flash.insert(precision.into(), flash);
+            figures.controllers.push(controller("case-1", precision));
+            let mut quick = controller("two-level", precision);
+            (quick.cycle.min, quick.cycle.max) = (9_000, 9_000);
+            figures.controllers.push(quick);
         }
+        figures
     }
 
     #[test]
     fn what_is_beyond_a_limit_is_named_with_value_and_limit() {
-        let [f64, f32] = PRECISIONS;
-        let most = f32.working_memory - STATE;
-        assert!(exceeded(&figures(12_448, Some(most), f32.flash)).is_empty());
-        let slow = exceeded(&figures(12_449, Some(most), f32.flash));
+        let most = 4_352 - STATE;
+        assert!(exceeded(&figures(12_448, Some(most), 56_748)).is_empty());
         assert_eq!(
-            slow,
+            exceeded(&figures(12_449, Some(most), 1)),
             ["case-1 f32: cycle, instructions: 12449, limit 12448"]
         );
-        let large = exceeded(&figures(9_000, Some(most + 1), f32.flash));
         assert_eq!(
-            large,
-            ["case-1 f32: state and stack of the cycle, bytes: 4353, limit 4352"]
+            exceeded(&figures(9_000, Some(most + 1), 1)),
+            ["case-1", "two-level"].map(|experiment| format!(
+                "{experiment} f32: state and stack of the cycle, bytes: 4353, limit 4352"
+            ))
         );
-        // Working memory, cycle and constructor in both precisions.
-        assert_eq!(exceeded(&figures(9_000, Some(STACK + 1), 1)).len(), 6);
+        // Working memory, cycle and constructor of all four.
+        assert_eq!(exceeded(&figures(9_000, Some(12_289), 1)).len(), 12);
         let lost = exceeded(&figures(9_000, None, 1));
-        assert_eq!(lost.len(), 6);
-        assert!(lost[1].ends_with("bytes: none, limit 12288"), "{lost:?}");
-        assert_eq!(exceeded(&figures(9_000, Some(1), f64.flash + 1)).len(), 2);
+        assert_eq!(lost.len(), 12);
+        assert!(lost[11].ends_with("bytes: none, limit 12288"), "{lost:?}");
+        assert_eq!(exceeded(&figures(9_000, Some(1), 61_441)).len(), 2);
         // Ten instructions are too much of a spread here.
         assert_eq!(exceeded(&figures(1_000, Some(1), 1)).len(), 2);
-        let mut seen = figures(9_000, Some(1000), 1);
-        seen.controllers[0].stack.init_seen = 1004;
+        let mut seen = figures(9_000, Some(1_000), 1);
+        seen.controllers[0].stack.init_seen = 1_004;
         assert_eq!(
             exceeded(&seen),
             ["case-1 f64: stack of the constructor seen is 1004 bytes, above its bound"]
         );
-        seen = figures(9_000, Some(1), 1);
-        seen.core_flash.clear();
-        seen.sizes.clear();
-        assert_eq!(exceeded(&seen).len(), 4);
+        assert_eq!(exceeded(&Figures::default()).len(), LIMITS.len());
     }
 }

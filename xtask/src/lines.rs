@@ -1,13 +1,14 @@
 //! Counts lines of code: what a reader has to understand.
 //!
 //! Counted are src/**/*.rs and build.rs of every package, as rustfmt lays them out, without
-//! blank lines, comments and `#[cfg(test)]` modules, also those in files of their own; tests,
+//! blank lines, comments, `#[cfg(test)]` modules and files `tests.rs`; tests,
 //! benches, examples and generated files are not. Documentation is counted apart, per public item.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::fs;
 use std::process::Command;
 
-use crate::tools::{Outcome, Trouble, failed};
+use crate::tools::{Outcome, Trouble, root, run as output_of};
 
 /// Counts of some files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,54 +20,39 @@ struct Lines {
 
 /// Prints a row per package and a sum, of the working tree or of a revision.
 pub fn run(revision: Option<&str>) -> Outcome {
-    let mut files: Vec<(String, String)> = Vec::new();
+    let mut packages = BTreeMap::<String, Lines>::new();
     for file in git(&listing(revision))?.lines() {
-        if package_of(file).is_none() {
-            continue;
-        }
-        let text = match revision {
-            Some(revision) => git(&["show", &format!("{revision}:{file}")])?,
+        let text = match (package_of(file), revision) {
+            (None, _) => continue,
+            (_, Some(revision)) => git(&["show", &format!("{revision}:{file}")])?,
             // Deleted, and not yet committed.
-            None if !Path::new(file).exists() => continue,
-            None => std::fs::read_to_string(file)?,
+            _ if !root().join(file).exists() => continue,
+            _ => fs::read_to_string(root().join(file))?,
         };
-        files.push((file.to_string(), text));
-    }
-    let tests: Vec<String> = files
-        .iter()
-        .flat_map(|(file, text)| test_modules(file, text))
-        .collect();
-    let mut packages: Vec<(String, Lines)> = Vec::new();
-    for (file, text) in &files {
-        let Some(package) = package_of(file).filter(|_| !is_test(file, &tests)) else {
-            continue;
-        };
-        let lines = count(text);
-        match packages.iter_mut().find(|(name, _)| *name == package) {
-            Some((_, sum)) => sum.add(lines),
-            None => packages.push((package.to_string(), lines)),
-        }
+        let package = package_of(file).unwrap_or_default().to_string();
+        packages.entry(package).or_default().add(count(&text));
     }
     let mut all = Lines::default();
+    let [code, doc, public, per_item] = ["code", "doc", "public", "doc/item"];
     println!(
-        "{:<28} {:>7} {:>7} {:>7} {:>9}",
-        "package", "code", "doc", "public", "doc/item"
+        "{:<28} {code:>7} {doc:>7} {public:>7} {per_item:>9}",
+        "package"
     );
-    for (name, lines) in &packages {
-        all.add(*lines);
-        print_row(name, lines);
+    for (name, lines) in packages {
+        all.add(lines);
+        print_row(&name, lines);
     }
-    print_row("together", &all);
+    print_row("together", all);
     Ok(true)
 }
 
-fn print_row(name: &str, lines: &Lines) {
-    let per_item = lines.documentation as f64 / lines.public_items.max(1) as f64;
+fn print_row(name: &str, lines: Lines) {
     let Lines {
         code,
         documentation,
         public_items,
     } = lines;
+    let per_item = documentation as f64 / public_items.max(1) as f64;
     println!("{name:<28} {code:>7} {documentation:>7} {public_items:>7} {per_item:>9.2}");
 }
 
@@ -84,41 +70,14 @@ fn package_of(file: &str) -> Option<&str> {
         Some(_) => return None,
         None => file.strip_suffix("/build.rs")?,
     };
-    let counted = !package.contains("/tests/") && !package.contains("/examples/");
-    counted.then_some(package)
-}
-
-/// The modules in files of their own that a file has for its tests: their paths, without
-/// what is behind the name.
-fn test_modules(file: &str, text: &str) -> Vec<String> {
-    let folder = ["/lib.rs", "/main.rs", "/mod.rs", ".rs"]
+    let tests = ["/tests/", "/examples/"]
         .iter()
-        .find_map(|end| file.strip_suffix(end))
-        .unwrap_or(file);
-    let lines = text.lines().map(str::trim);
-    lines
-        .clone()
-        .zip(lines.skip(1))
-        .filter(|(attribute, _)| *attribute == "#[cfg(test)]")
-        .filter_map(|(_, module)| module.strip_suffix(';')?.split("mod ").nth(1))
-        .map(|name| format!("{folder}/{name}"))
-        .collect()
-}
-
-/// Whether a file is one of these modules or below it.
-fn is_test(file: &str, tests: &[String]) -> bool {
-    tests.iter().any(|module| {
-        let rest = file.strip_prefix(module.as_str());
-        rest.is_some_and(|rest| rest == ".rs" || rest.starts_with('/'))
-    })
+        .any(|it| package.contains(it));
+    (!tests && !file.ends_with("/tests.rs")).then_some(package)
 }
 
 fn git(arguments: &[&str]) -> Result<String, Trouble> {
-    let output = Command::new("git").args(arguments).output()?;
-    if !output.status.success() {
-        return Err(failed("git", &output));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    output_of(Command::new("git").args(arguments).current_dir(root()))
 }
 
 impl Lines {
@@ -177,24 +136,6 @@ mod tests {
     }
 
     #[test]
-    fn modules_of_tests_do_not_count() {
-        let text = "mod a;\n#[cfg(test)]\nmod tests;\nmod tree;\n";
-        for (file, module) in [
-            ("x/src/rooms.rs", "x/src/rooms/tests"),
-            ("x/src/rooms/mod.rs", "x/src/rooms/tests"),
-            ("x/src/lib.rs", "x/src/tests"),
-        ] {
-            let tests = test_modules(file, text);
-            assert_eq!(tests, [module], "{file}");
-            for end in [".rs", "/mod.rs", "/more.rs"] {
-                assert!(is_test(&format!("{module}{end}"), &tests), "{file} {end}");
-            }
-            assert!(!is_test(&format!("{module}_of.rs"), &tests));
-        }
-        assert!(test_modules("x/src/a.rs", "#[cfg(test)]\nmod tests {\n").is_empty());
-    }
-
-    #[test]
     fn only_sources_of_packages_count() {
         assert_eq!(package_of("hil-sim/src/cli/run.rs"), Some("hil-sim"));
         assert_eq!(
@@ -203,6 +144,7 @@ mod tests {
         );
         for other in [
             "tests/tests/a.rs",
+            "xtask/src/rooms/tests.rs",
             "fri/examples/mutate/main.rs",
             "hil-sim/src/a.css",
         ] {

@@ -25,7 +25,7 @@ mod tools;
 use std::process::ExitCode;
 
 use board::Medium;
-use tools::{Need, Outcome};
+use tools::{LLVM, QEMU, Trouble};
 
 const USAGE: &str = "usage: cargo xtask COMMAND
 
@@ -58,7 +58,7 @@ rooms --graph CRATE    which file uses what of which other file";
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let outcome: Outcome = match words[..] {
+    let outcome = match words[..] {
         ["selftest-m7"] => selftest::run("10000"),
         ["selftest-m7", cycles] => selftest::run(cycles),
         ["panic-free-m7"] => panic_free::run(),
@@ -72,32 +72,16 @@ fn main() -> ExitCode {
         ["board-m7"] => placement::run(),
         ["lines"] => lines::run(None),
         ["lines", revision] => lines::run(Some(revision)),
-        ["missing-m7"] => tools::Tools::find(&[Need::Emulator, Need::LlvmTools]).map(|_| true),
-        ["same-bytes", ref words @ ..] => match same_bytes::Comparison::parse(words) {
-            Ok(comparison) => comparison.run(),
-            Err(wrong) => {
-                eprintln!("{wrong}");
-                return 2.into();
-            }
-        },
-        ["rooms", ref words @ ..] => match rooms::Rooms::parse(words) {
-            Ok(rooms) => rooms.run(),
-            Err(wrong) => {
-                eprintln!("{wrong}");
-                return 2.into();
-            }
-        },
-        _ => {
-            eprintln!("{USAGE}");
-            return 2.into();
-        }
+        ["missing-m7"] => tools::find(&[QEMU, LLVM]).map(|()| true),
+        ["same-bytes", ref words @ ..] => same_bytes::run(words),
+        ["rooms", ref words @ ..] => rooms::run(words),
+        _ => Err(Trouble::usage(USAGE.into())),
     };
     match outcome {
-        Ok(true) => 0.into(),
-        Ok(false) => 1.into(),
+        Ok(fine) => u8::from(!fine).into(),
         Err(trouble) => {
-            eprintln!("{trouble}");
-            trouble.exit_code().into()
+            eprintln!("{}", trouble.text);
+            trouble.exit_code.into()
         }
     }
 }

@@ -2,9 +2,9 @@
 //! cycle needs them.
 
 use std::ops::Range;
-use std::process::Command;
 
-use crate::tools::{Need, Outcome, TARGET, Tools, Trouble, failed, llvm_tool};
+use crate::tools::{LLVM, Outcome, TARGET, Trouble, cargo, find, llvm_tool, root};
+use crate::tools::{run as output_of, work};
 
 const PACKAGE: &str = "firmware/boards/stm32h743";
 
@@ -30,29 +30,23 @@ const THUNK: &str = "LongThunk_";
 
 /// Builds it and checks the addresses.
 pub fn run() -> Outcome {
-    let tools = Tools::find(&[Need::LlvmTools])?;
-    let build = tools.work.join("stm32h743");
-    let output = Command::new("cargo")
-        .args(["build", "--locked", "--release", "--target", TARGET])
-        .arg("--manifest-path")
-        .arg(tools.root.join(PACKAGE).join("Cargo.toml"))
-        .arg("--target-dir")
-        .arg(&build)
-        // Where the configuration with the target's CPU is found.
-        .current_dir(&tools.root)
-        .output()?;
-    if !output.status.success() {
-        return Err(failed(&format!("build of {PACKAGE}"), &output));
-    }
-    let image = build.join(TARGET).join("release").join("stm32h743");
-    let output = Command::new(llvm_tool("llvm-nm")?)
-        .args(["--demangle", "--defined-only"])
-        .arg(&image)
-        .output()?;
-    if !output.status.success() {
-        return Err(failed("llvm-nm", &output));
-    }
-    let symbols = symbols(&String::from_utf8_lossy(&output.stdout));
+    find(&[LLVM])?;
+    let build = work()?.join("stm32h743");
+    // In the workspace, where the configuration with the target's CPU is found.
+    let mut cargo = cargo("build");
+    cargo.args([
+        "--locked",
+        "--release",
+        "--target",
+        TARGET,
+        "--manifest-path",
+    ]);
+    cargo.arg(root().join(PACKAGE).join("Cargo.toml"));
+    output_of(cargo.arg("--target-dir").arg(&build))?;
+    let image = build.join(TARGET).join("release/stm32h743");
+    let mut nm = llvm_tool("llvm-nm")?;
+    nm.args(["--demangle", "--defined-only"]).arg(&image);
+    let symbols = symbols(&output_of(&mut nm)?);
     let misplaced = misplaced(&symbols);
     for line in &misplaced {
         println!("{line}");
@@ -66,7 +60,7 @@ pub fn run() -> Outcome {
         let address = |wanted: &str| symbols.iter().find(|(_, name)| name == wanted);
         match (address(from), address(to)) {
             (Some((from, _)), Some((to, _))) => Ok(to - from),
-            _ => Err(Trouble::Content(format!("no {from} or {to} in the image"))),
+            _ => Err(Trouble::new(format!("no {from} or {to} in the image"))),
         }
     };
     let code = size("__itcm_start", "__itcm_end")?;
@@ -100,37 +94,33 @@ fn short(name: &str) -> &str {
 fn misplaced(symbols: &[(u64, String)]) -> Vec<String> {
     let mut lines = Vec::new();
     for (parts, (memory, range)) in REQUIRED {
-        let mut found = symbols
+        let found: Vec<_> = symbols
             .iter()
             .filter(|(_, name)| has(name, parts))
-            .peekable();
-        if found.peek().is_none() {
+            .collect();
+        if found.is_empty() {
             lines.push(format!("{}: not in the image", parts.concat()));
         }
-        // The stack begins behind the last address.
-        let range = range.start..=range.end;
-        lines.extend(
-            found
-                .filter(|(address, _)| !range.contains(address))
-                .map(|(address, name)| {
-                    outside(*address, name, memory, *range.start(), *range.end())
-                }),
-        );
+        for (address, name) in found {
+            // The stack begins behind the last address.
+            if !range.contains(address) && *address != range.end {
+                let (name, std::ops::Range { start, end }) = (short(name), range);
+                lines.push(format!(
+                    "{name}: at {address:#x}; allowed {start:#x} to {end:#x}, {memory}"
+                ));
+            }
+        }
     }
     let (memory, range) = &ITCM;
-    for (address, name) in symbols {
-        if let Some((_, callee)) = name.split_once(THUNK)
-            && range.contains(address)
-        {
+    for (_, name) in symbols
+        .iter()
+        .filter(|(address, _)| range.contains(address))
+    {
+        if let Some((_, callee)) = name.split_once(THUNK) {
             lines.push(format!("{callee}: not in {memory}, called from it"));
         }
     }
     lines
-}
-
-fn outside(address: u64, name: &str, memory: &str, start: u64, end: u64) -> String {
-    let name = short(name);
-    format!("{name}: at {address:#x}; allowed {start:#x} to {end:#x}, {memory}")
 }
 
 #[cfg(test)]

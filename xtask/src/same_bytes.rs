@@ -2,19 +2,16 @@
 //! code changed a number.
 
 mod builds;
-mod compare;
-mod csv;
-mod difference;
-mod group;
+mod differences;
 mod states;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
-use crate::tools::{Outcome, Trouble, failed};
-use builds::{Place, Source};
-use group::Group;
+use crate::tools::{Outcome, Trouble, files, good, target};
+use builds::Source;
+use differences::Group;
 
 const SCENARIOS: [&str; 4] = ["two-level", "case-1", "case-2", "hand"];
 const PLANTS: [&str; 2] = ["ideal", "realistic"];
@@ -22,209 +19,137 @@ const PLANTS: [&str; 2] = ["ideal", "realistic"];
 /// Exit codes of `hil-sim` with which its results are there: pass, fail, stopped.
 const VERDICTS: [i32; 3] = [0, 1, 3];
 
-/// What is asked for.
-#[derive(Debug)]
-pub struct Comparison {
-    place: Place,
-    base: Source,
-    new: Source,
-    /// Parts of names of CSV columns and JSON paths that may differ.
-    ignore: Vec<String>,
+/// Builds what has to be built, runs both and says what differs. The results stay where
+/// they are unless they are equal.
+pub fn run(words: &[&str]) -> Outcome {
+    let (sources, ignore) = parse(words)?;
+    // Of this process alone: another comparison may run at the same time.
+    let work = target().join(format!("same-bytes/out-{}", std::process::id()));
+    // Each side works on a copy of its program. The base's is made before the new one is
+    // built, because the build may write to the very file that is the base.
+    let sides = ["base", "new"].map(|side| work.join(side));
+    for (source, side) in sources.iter().zip(&sides) {
+        println!("{}: {source:?}", side.display());
+        fs::create_dir_all(side)?;
+        fs::copy(source.program()?, side.join("hil-sim"))?;
+    }
+    let equal = compare(&sides, &work.join("states"), &ignore)?;
+    if equal {
+        fs::remove_dir_all(&work)?;
+        let but = if ignore.is_empty() {
+            ""
+        } else {
+            " but for names with "
+        };
+        println!("equal in every byte{but}{}", ignore.join(" or "));
+    } else {
+        println!("not equal; the results are in {}", work.display());
+    }
+    Ok(equal)
 }
 
-impl Comparison {
-    /// Reads the words behind the command; the error is for the user.
-    pub fn parse(words: &[&str]) -> Result<Self, String> {
-        let mut names = Vec::new();
-        let mut ignore = Vec::new();
-        let mut words = words.iter();
-        while let Some(&word) = words.next() {
-            match word {
-                "--ignore" => match words.next() {
-                    Some(part) if !part.is_empty() => ignore.push(part.to_string()),
-                    _ => return Err("--ignore: none; allowed: part of a name".into()),
-                },
-                option if option.starts_with('-') => {
-                    return Err(format!("option: '{option}'; allowed: --ignore"));
-                }
-                name => names.push(name),
+/// Base and new build, and parts of names of CSV columns and JSON paths that may differ.
+fn parse(words: &[&str]) -> Result<([Source; 2], Vec<String>), Trouble> {
+    let allowed = "allowed: BASE [NEW] [--ignore PART]...";
+    let (mut names, mut ignore) = (Vec::new(), Vec::new());
+    let mut words = words.iter();
+    while let Some(&word) = words.next() {
+        match (word, word.starts_with('-')) {
+            ("--ignore", _) => {
+                let part = words.next().filter(|part| !part.is_empty());
+                let none = || Trouble::usage(format!("--ignore: none; {allowed}"));
+                ignore.push(part.ok_or_else(none)?.to_string());
             }
+            (option, true) => return Err(Trouble::usage(format!("option: '{option}'; {allowed}"))),
+            (name, false) => names.push(name),
         }
-        let (base, new) = match names[..] {
-            [base] => (base, None),
-            [base, new] => (base, Some(new)),
-            _ => {
-                let count = names.len();
-                return Err(format!("builds: {count}; allowed: BASE, or BASE and NEW"));
-            }
-        };
-        let place = Place::find().map_err(|error| error.to_string())?;
-        Ok(Self {
-            base: place.source("BASE", base)?,
-            new: new.map_or(Ok(Source::WorkingTree), |new| place.source("NEW", new))?,
-            place,
-            ignore,
-        })
     }
-
-    /// Builds what has to be built, runs both and says what differs. The results stay
-    /// where they are unless they are equal.
-    pub fn run(&self) -> Outcome {
-        println!("base: {}", self.base);
-        println!("new: {}", self.new);
-        // Of this process alone: another comparison may run at the same time.
-        let work = self
-            .place
-            .folder
-            .join(format!("out-{}", std::process::id()));
-        if work.exists() {
-            fs::remove_dir_all(&work)?;
-        }
-        let pair = self.pair(&work)?;
-        let equal = self.compare(&pair, &work)?;
-        if equal {
-            fs::remove_dir_all(&work)?;
-            println!("equal in every byte{}", self.but());
-        } else {
-            println!("not equal; the results are in {}", work.display());
-        }
-        Ok(equal)
-    }
-
-    /// Each side works on a copy of its program. The base's is made before the new one
-    /// is built, because the build may write to the very file that is the base.
-    fn pair(&self, work: &Path) -> Result<Pair, Trouble> {
-        let side = |name: &'static str, source: &Source| -> Result<Side, Trouble> {
-            let program = self.place.program(source)?;
-            let side = Side {
-                name,
-                folder: work.join(name),
-            };
-            fs::create_dir_all(&side.folder)?;
-            fs::copy(&program, side.program())
-                .map_err(|error| Trouble::Content(format!("{}: {error}", program.display())))?;
-            Ok(side)
-        };
-        let pair = Pair {
-            base: side("base", &self.base)?,
-            new: side("new", &self.new)?,
-        };
-        if fs::read(pair.base.program())? == fs::read(pair.new.program())? {
-            println!("note: both programs are the same, byte by byte");
-        }
-        Ok(pair)
-    }
-
-    fn compare(&self, pair: &Pair, work: &Path) -> Outcome {
-        let mut equal = true;
-        let mut say = |group: Group| {
-            for line in group.lines() {
-                println!("{line}");
-            }
-            equal &= group.equal();
-        };
-        for scenario in SCENARIOS {
-            for plant in PLANTS {
-                let arguments = ["run", scenario, "--plant", plant];
-                say(self.results(pair, &format!("{scenario}-{plant}"), &arguments)?);
-            }
-        }
-        say(self.results(pair, "paper", &["paper"])?);
-        say(self.explained(pair, &work.join("states"))?);
-        Ok(equal)
-    }
-
-    /// What a command writes to its output folder, and its exit code.
-    fn results(&self, pair: &Pair, name: &str, arguments: &[&str]) -> Result<Group<'_>, Trouble> {
-        let mut all = arguments.to_vec();
-        all.extend(["--out", name]);
-        let outputs = pair.run(&all)?;
-        if !(outputs[0].status.code()).is_some_and(|code| VERDICTS.contains(&code)) {
-            return Err(failed(
-                &format!("base: hil-sim {}", all.join(" ")),
-                &outputs[0],
-            ));
-        }
-        let mut group = Group::new(name, "files", &self.ignore);
-        group.add("exit code", 0, compare::exits(&outputs));
-        let folders = [&pair.base, &pair.new].map(|side| side.folder.join(name));
-        compare::folders(&folders, &mut group)?;
-        if group.count == 0 {
-            let name = folders[0].display();
-            return Err(Trouble::Content(format!(
-                "{name}: no result; allowed: some"
+    let sources = match names[..] {
+        [base] => [Source::named("BASE", base)?, Source::WorkingTree],
+        [base, new] => [Source::named("BASE", base)?, Source::named("NEW", new)?],
+        _ => {
+            return Err(Trouble::usage(format!(
+                "builds: {}; {allowed}",
+                names.len()
             )));
         }
-        Ok(group)
-    }
-
-    /// What `explain` says about random states.
-    fn explained(&self, pair: &Pair, folder: &Path) -> Result<Group<'_>, Trouble> {
-        fs::create_dir_all(folder)?;
-        let mut group = Group::new("explain", "states", &self.ignore);
-        for (index, state) in states::all().iter().enumerate() {
-            let name = format!("{index:03}.json");
-            fs::write(folder.join(&name), format!("{state:#}\n"))?;
-            let outputs = pair.run(&["explain", &format!("../states/{name}")])?;
-            let [base, new] = &outputs;
-            if !base.status.success() {
-                let what = format!(
-                    "the generator of states is wrong, base must explain each: {}",
-                    folder.join(&name).display()
-                );
-                return Err(failed(&what, base));
-            }
-            let mut found = compare::exits(&outputs);
-            found.extend(compare::json_bytes(&base.stdout, &new.stdout));
-            group.count += 1;
-            group.add(&format!("states/{name}"), base.stdout.len(), found);
-        }
-        Ok(group)
-    }
-
-    fn but(&self) -> String {
-        if self.ignore.is_empty() {
-            String::new()
-        } else {
-            format!(" but for names with {}", self.ignore.join(" or "))
-        }
-    }
+    };
+    Ok((sources, ignore))
 }
 
-/// One of the programs, in a folder of its own.
-struct Side {
-    name: &'static str,
-    folder: PathBuf,
+fn compare(sides: &[PathBuf; 2], states: &Path, ignore: &[String]) -> Outcome {
+    let mut equal = true;
+    for scenario in SCENARIOS {
+        for plant in PLANTS {
+            let name = format!("{scenario}-{plant}");
+            equal &= results(sides, &name, &["run", scenario, "--plant", plant], ignore)?;
+        }
+    }
+    equal &= results(sides, "paper", &["paper"], ignore)?;
+    fs::create_dir_all(states)?;
+    let mut group = Group::new("explain", "states", ignore);
+    for (index, state) in states::all().iter().enumerate() {
+        let name = format!("../states/{index:03}.json");
+        fs::write(states.join(&name), format!("{state:#}\n"))?;
+        let outputs = run_both(sides, &["explain", &name], &[0])?;
+        group.add_exits(&outputs);
+        let [base, new] = outputs.map(|output| output.stdout);
+        group.add(&name, Some(&base), Some(&new));
+    }
+    Ok(group.print() && equal)
 }
 
-impl Side {
-    fn program(&self) -> PathBuf {
-        self.folder.join("hil-sim")
+/// What a command writes to its output folder.
+fn results(sides: &[PathBuf; 2], name: &str, arguments: &[&str], ignore: &[String]) -> Outcome {
+    let arguments = [arguments, &["--out", name]].concat();
+    let outputs = run_both(sides, &arguments, &VERDICTS)?;
+    let folders = sides.each_ref().map(|side| side.join(name));
+    let mut names = [files(&folders[0])?, files(&folders[1])?].concat();
+    names.retain(|name| {
+        name.extension()
+            .is_some_and(|it| it == "csv" || it == "json")
+    });
+    names.sort();
+    names.dedup();
+    if names.is_empty() {
+        return Err(Trouble::new(format!("{name}: no result; allowed: some")));
     }
+    let mut group = Group::new(name, "files", ignore);
+    group.add_exits(&outputs);
+    for name in names {
+        let [base, new] = folders
+            .each_ref()
+            .map(|folder| fs::read(folder.join(&name)).ok());
+        group.add(&name.to_string_lossy(), base.as_deref(), new.as_deref());
+    }
+    Ok(group.print())
+}
 
-    fn start(&self, arguments: &[&str]) -> Result<Child, Trouble> {
-        Command::new(self.program())
+/// Runs both at the same time. The base has to end with one of these exit codes.
+fn run_both(
+    sides: &[PathBuf; 2],
+    arguments: &[&str],
+    codes: &[i32],
+) -> Result<[Output; 2], Trouble> {
+    let mut commands = sides.each_ref().map(|side| {
+        let mut command = Command::new(side.join("hil-sim"));
+        command
             .args(arguments)
-            .current_dir(&self.folder)
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .map_err(|error| Trouble::Content(format!("{}: hil-sim: {error}", self.name)))
+            .current_dir(side)
+            .stdin(Stdio::null());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    });
+    let [base, new] = &mut commands;
+    let (running, new) = (base.spawn()?, new.spawn()?);
+    let outputs = [running.wait_with_output()?, new.wait_with_output()?];
+    if !codes
+        .iter()
+        .any(|code| outputs[0].status.code() == Some(*code))
+    {
+        good(&format!("{base:?}"), &outputs[0])?;
     }
-}
-
-struct Pair {
-    base: Side,
-    new: Side,
-}
-
-impl Pair {
-    /// Runs both at the same time.
-    fn run(&self, arguments: &[&str]) -> Result<[Output; 2], Trouble> {
-        let (base, new) = (self.base.start(arguments)?, self.new.start(arguments)?);
-        Ok([base.wait_with_output()?, new.wait_with_output()?])
-    }
+    Ok(outputs)
 }
 
 #[cfg(test)]
@@ -233,12 +158,13 @@ mod tests {
 
     #[test]
     fn wrong_words_are_named() {
-        let wrong = |words: &[&str]| Comparison::parse(words).expect_err("an error");
-        assert_eq!(wrong(&[]), "builds: 0; allowed: BASE, or BASE and NEW");
-        assert_eq!(wrong(&["--ignor"]), "option: '--ignor'; allowed: --ignore");
+        let wrong = |words: &[&str]| parse(words).expect_err("an error").text;
+        let allowed = "allowed: BASE [NEW] [--ignore PART]...";
+        assert_eq!(wrong(&[]), format!("builds: 0; {allowed}"));
+        assert_eq!(wrong(&["--ignor"]), format!("option: '--ignor'; {allowed}"));
         assert_eq!(
             wrong(&["HEAD", "--ignore"]),
-            "--ignore: none; allowed: part of a name"
+            format!("--ignore: none; {allowed}")
         );
         assert_eq!(
             wrong(&["no-such-thing"]),

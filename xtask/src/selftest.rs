@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::tools::{Need, Outcome, Tools, Trouble};
+use crate::tools::{Outcome, QEMU, Trouble, emulate, find, host, image, work};
 
 /// The log that the image opens.
 const LOG: &str = "selftest.log";
@@ -18,10 +18,10 @@ const DAMAGE: (usize, usize) = (77, 5);
 /// The host writes the log, the target replays it. Then one bit of a short log is
 /// turned, and the target must find exactly this one.
 pub fn run(cycles: &str) -> Outcome {
-    let tools = Tools::find(&[Need::Emulator])?;
-    let image = tools.image("selftest", &[])?;
-    print!("host:   {}", tools.host("selftest", &[LOG, cycles])?);
-    let output = tools.emulate(&image, &[])?;
+    find(&[QEMU])?;
+    let image = image("selftest", "")?;
+    print!("host:   {}", host("selftest", &[LOG, cycles])?);
+    let output = emulate(&image, &[])?;
     let said = String::from_utf8_lossy(&output.stdout);
     for line in said.lines() {
         println!("target: {line}");
@@ -33,16 +33,15 @@ pub fn run(cycles: &str) -> Outcome {
     }
 
     let (cycle, joint) = DAMAGE;
-    tools.host("selftest", &[LOG, "100"])?;
-    let path = tools.work.join(LOG);
+    host("selftest", &[LOG, "100"])?;
+    let path = work()?.join(LOG);
     let mut log = fs::read(&path)?;
     let place = HEADER + cycle * CYCLE + TORQUES + (joint - 1) * 8;
-    let byte = log
-        .get_mut(place)
-        .ok_or_else(|| Trouble::Content("the log is too short to be damaged".into()))?;
+    let short = || Trouble::new("the log is too short to be damaged".into());
+    let byte = log.get_mut(place).ok_or_else(short)?;
     *byte ^= 1;
     fs::write(&path, log)?;
-    let output = tools.emulate(&image, &[])?;
+    let output = emulate(&image, &[])?;
     let said = String::from_utf8_lossy(&output.stdout);
     let found = output.status.code() == Some(1)
         && said.contains("7 torques, 1 differing bits")

@@ -4,9 +4,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::process::Command;
 
-use crate::tools::{Trouble, failed, llvm_tool};
+use crate::tools::{Trouble, llvm_tool, run};
 
 /// Branches and calls to an address.
 const BRANCHES: [&str; 18] = [
@@ -45,13 +44,11 @@ pub struct Below {
 impl CallGraph {
     /// Takes an image apart.
     pub fn of(image: &Path) -> Result<Self, Trouble> {
-        let mut objdump = Command::new(llvm_tool("llvm-objdump")?);
+        let mut objdump = llvm_tool("llvm-objdump")?;
         objdump.args(["--disassemble", "--demangle", "--no-show-raw-insn"]);
-        let output = objdump.arg("--mcpu=cortex-m7").arg(image).output()?;
-        if !output.status.success() {
-            return Err(failed("llvm-objdump", &output));
-        }
-        Ok(Self::parse(&String::from_utf8_lossy(&output.stdout)))
+        Ok(Self::parse(&run(objdump
+            .arg("--mcpu=cortex-m7")
+            .arg(image))?))
     }
 
     fn parse(text: &str) -> Self {
@@ -88,7 +85,7 @@ impl CallGraph {
         let pattern = format!("::{name}::");
         let mut found = (self.functions.iter()).filter(|(_, f)| f.name.contains(&pattern));
         let (Some((&start, _)), None) = (found.next(), found.next()) else {
-            return Err(Trouble::Content(format!(
+            return Err(Trouble::new(format!(
                 "not one function {name} in the image"
             )));
         };

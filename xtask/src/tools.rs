@@ -1,8 +1,7 @@
 //! The programs that are needed: which are missing, and how they are called.
 
-use std::fmt;
+use std::env;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -12,218 +11,200 @@ pub const TARGET: &str = "thumbv7em-none-eabihf";
 /// The emulator.
 pub const QEMU: &str = "qemu-system-arm";
 
+/// Disassembler, sizes and symbols.
+pub const LLVM: &str = "llvm-tools";
+
+/// Of the application's log.
+pub const DEFMT: &str = "defmt-print";
+
+/// What a command may need, and the line that installs it.
+const NEEDS: [(&str, &str); 4] = [
+    (TARGET, "rustup target add thumbv7em-none-eabihf"),
+    (QEMU, "apt-get install qemu-system-arm"),
+    (LLVM, "rustup component add llvm-tools"),
+    (DEFMT, "cargo install defmt-print --version 1.2.0 --locked"),
+];
+
 /// What came out: a verdict, or why there is none.
 pub type Outcome = Result<bool, Trouble>;
 
 /// Why there is no verdict.
-#[derive(Debug)]
-pub enum Trouble {
-    /// Something has to be installed: what, and the line that does it.
-    Missing(Vec<(&'static str, &'static str)>),
-    /// A command failed that should not: its line and what it said.
-    Command(String),
-    /// A file or an output is not what it should be.
-    Content(String),
+#[derive(Debug, PartialEq)]
+pub struct Trouble {
+    /// For the user.
+    pub text: String,
+    /// 2 where words are wrong or something has to be installed, otherwise 1.
+    pub exit_code: u8,
 }
 
 impl Trouble {
-    /// 2 where something is missing, 1 otherwise.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Missing(_) => 2,
-            Self::Command(_) | Self::Content(_) => 1,
-        }
+    /// A file or an output is not what it should be.
+    pub fn new(text: String) -> Self {
+        let exit_code = 1;
+        Self { text, exit_code }
+    }
+
+    /// The words behind a command are wrong, or something is missing.
+    pub fn usage(text: String) -> Self {
+        let exit_code = 2;
+        Self { text, exit_code }
     }
 }
 
-impl fmt::Display for Trouble {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missing(list) => {
-                let lines = list
-                    .iter()
-                    .map(|(what, how)| format!("missing: {what}; install it with: {how}"));
-                f.write_str(&lines.collect::<Vec<_>>().join("\n"))
-            }
-            Self::Command(text) | Self::Content(text) => f.write_str(text),
-        }
+impl<E: std::error::Error> From<E> for Trouble {
+    fn from(error: E) -> Self {
+        Self::new(error.to_string())
     }
 }
 
-impl From<io::Error> for Trouble {
-    fn from(error: io::Error) -> Self {
-        Self::Content(error.to_string())
+/// Looks for the target's standard library and for `needs`; names everything that is
+/// missing at once.
+pub fn find(needs: &[&str]) -> Result<(), Trouble> {
+    let there = |need: &str| match need {
+        TARGET => (sysroot().ok()).is_some_and(|it| it.join(TARGET).join("lib").is_dir()),
+        LLVM => llvm_tool("llvm-objdump").is_ok(),
+        program => Command::new(program).arg("--version").output().is_ok(),
+    };
+    let needed = NEEDS
+        .iter()
+        .filter(|(need, _)| *need == TARGET || needs.contains(need));
+    let missing: Vec<String> = needed
+        .filter(|(need, _)| !there(need))
+        .map(|(need, how)| format!("missing: {need}; install it with: {how}"))
+        .collect();
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Trouble::usage(missing.join("\n")))
     }
 }
 
-/// What a command needs besides the target.
-#[derive(Clone, Copy, Debug)]
-pub enum Need {
-    /// QEMU.
-    Emulator,
-    /// Disassembler and sizes.
-    LlvmTools,
-    /// Of the application's log.
-    LogDecoder,
+/// The folder of the workspace.
+pub fn root() -> &'static Path {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here)
 }
 
-/// Everything that is needed is there.
-#[derive(Debug)]
-pub struct Tools {
-    /// Of the workspace.
-    pub root: PathBuf,
-    /// Where cargo builds to.
-    build: PathBuf,
-    /// Where images run and leave their files.
-    pub work: PathBuf,
+/// Where cargo builds to.
+pub fn target() -> PathBuf {
+    root().join(env::var_os("CARGO_TARGET_DIR").unwrap_or("target".into()))
 }
 
-impl Tools {
-    /// Looks for the target's standard library and for `needs`; says everything
-    /// that is missing at once.
-    pub fn find(needs: &[Need]) -> Result<Self, Trouble> {
-        let mut missing = Vec::new();
-        let libraries = sysroot()?.join("lib/rustlib").join(TARGET).join("lib");
-        if !libraries.is_dir() {
-            missing.push((TARGET, "rustup target add thumbv7em-none-eabihf"));
-        }
-        for need in needs {
-            let (there, what, how) = match need {
-                Need::Emulator => (
-                    Command::new(QEMU).arg("--version").output().is_ok(),
-                    QEMU,
-                    "apt-get install qemu-system-arm",
-                ),
-                Need::LlvmTools => (
-                    llvm_tool("llvm-objdump").is_ok(),
-                    "llvm-tools",
-                    "rustup component add llvm-tools",
-                ),
-                Need::LogDecoder => (
-                    Command::new("defmt-print")
-                        .arg("--version")
-                        .output()
-                        .is_ok(),
-                    "defmt-print",
-                    "cargo install defmt-print --version 1.2.0 --locked",
-                ),
-            };
-            if !there {
-                missing.push((what, how));
-            }
-        }
-        if !missing.is_empty() {
-            return Err(Trouble::Missing(missing));
-        }
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("..")
-            .canonicalize()?;
-        let build = std::env::var_os("CARGO_TARGET_DIR")
-            .map_or_else(|| root.join("target"), |path| root.join(path));
-        let work = build.join("m7");
-        fs::create_dir_all(&work)?;
-        Ok(Self { root, build, work })
-    }
-
-    /// Builds an image for the target as it is shipped.
-    pub fn image(&self, name: &str, features: &[&str]) -> Result<PathBuf, Trouble> {
-        let output = self.try_image(name, features)?;
-        if output.status.success() {
-            Ok(self.build.join(TARGET).join("release").join(name))
-        } else {
-            Err(failed(&format!("build of the image {name}"), &output))
-        }
-    }
-
-    /// The same, whatever comes of it.
-    pub fn try_image(&self, name: &str, features: &[&str]) -> Result<Output, Trouble> {
-        let mut cargo = self.cargo("build");
-        cargo.args(["-p", "firmware", "--release", "--target", TARGET]);
-        cargo.args(["--bin", name, "--features", &features.join(",")]);
-        Ok(cargo.output()?)
-    }
-
-    /// Builds a program of the workspace for the host: the package of that name.
-    pub fn program(&self, name: &str) -> Result<PathBuf, Trouble> {
-        let output = self
-            .cargo("build")
-            .args(["-p", name, "--release"])
-            .output()?;
-        if output.status.success() {
-            Ok(self.build.join("release").join(name))
-        } else {
-            Err(failed(&format!("build of {name}"), &output))
-        }
-    }
-
-    /// Runs the host program of that name in the working directory.
-    pub fn host(&self, name: &str, arguments: &[&str]) -> Result<String, Trouble> {
-        let mut cargo = self.cargo("build");
-        cargo.args(["-p", "firmware", "--release", "--bin", name]);
-        let built = cargo.output()?;
-        if !built.status.success() {
-            return Err(failed(&format!("build of the host's {name}"), &built));
-        }
-        let mut program = Command::new(self.build.join("release").join(name));
-        let output = program.args(arguments).current_dir(&self.work).output()?;
-        if output.status.success() {
-            Ok(String::from_utf8_lossy(&output.stdout).into_owned())
-        } else {
-            Err(failed(&format!("the host's {name}"), &output))
-        }
-    }
-
-    /// Runs an image in QEMU, from the working directory.
-    pub fn emulate(&self, image: &Path, options: &[&str]) -> Result<Output, Trouble> {
-        let mut qemu = Command::new(QEMU);
-        qemu.args(["-M", "mps2-an500", "-display", "none", "-serial", "null"]);
-        qemu.args(["-monitor", "none", "-semihosting-config"]);
-        qemu.arg("enable=on,target=native").args(options);
-        qemu.arg("-kernel").arg(image);
-        qemu.current_dir(&self.work).stdin(Stdio::null());
-        Ok(qemu.output()?)
-    }
-
-    fn cargo(&self, command: &str) -> Command {
-        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-        cargo.arg(command).arg("--quiet").current_dir(&self.root);
-        cargo
-    }
+/// Where images run and leave their files.
+pub fn work() -> Result<PathBuf, Trouble> {
+    let work = target().join("m7");
+    fs::create_dir_all(&work)?;
+    Ok(work)
 }
 
-/// Of the compiler that builds the images.
-pub fn sysroot() -> Result<PathBuf, Trouble> {
-    let text = first_line("rustc", &["--print", "sysroot"])?;
-    Ok(PathBuf::from(text))
+/// Cargo with a command, in the workspace.
+pub fn cargo(command: &str) -> Command {
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.arg(command).arg("--quiet").current_dir(root());
+    cargo
+}
+
+/// Runs a command that has to succeed: what it prints. An error names the whole command, and
+/// says why it could not be started or what it said.
+pub fn run(command: &mut Command) -> Result<String, Trouble> {
+    let what = format!("{command:?}");
+    let output = command.output();
+    good(
+        &what,
+        &output.map_err(|error| Trouble::new(format!("{what}: {error}")))?,
+    )
+}
+
+/// What a command printed; an error with all that it said where it failed.
+pub fn good(what: &str, output: &Output) -> Result<String, Trouble> {
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if output.status.success() {
+        return Ok(said);
+    }
+    let (status, errors) = (output.status, String::from_utf8_lossy(&output.stderr));
+    Err(Trouble::new(format!(
+        "{what} failed ({status}):\n{said}{errors}"
+    )))
+}
+
+/// Cargo's command that builds an image for the target as it is shipped.
+pub fn image_build(name: &str, features: &str) -> Command {
+    let mut cargo = cargo("build");
+    cargo.args(["-p", "firmware", "--release", "--target", TARGET]);
+    cargo.args(["--bin", name, "--features", features]);
+    cargo
+}
+
+/// Builds an image: its path.
+pub fn image(name: &str, features: &str) -> Result<PathBuf, Trouble> {
+    run(&mut image_build(name, features))?;
+    Ok(target().join(TARGET).join("release").join(name))
+}
+
+/// Builds a program of a package for the host: its path.
+pub fn program(package: &str, name: &str) -> Result<PathBuf, Trouble> {
+    run(cargo("build").args(["-p", package, "--release", "--bin", name]))?;
+    Ok(target().join("release").join(name))
+}
+
+/// Runs the host program of an image in the working directory.
+pub fn host(name: &str, arguments: &[&str]) -> Result<String, Trouble> {
+    let mut program = Command::new(program("firmware", name)?);
+    run(program.args(arguments).current_dir(work()?))
+}
+
+/// The emulated board, in the working directory.
+pub fn qemu(image: &Path) -> Result<Command, Trouble> {
+    let mut qemu = Command::new(QEMU);
+    qemu.args(["-M", "mps2-an500", "-display", "none", "-monitor", "none"]);
+    qemu.args(["-semihosting-config", "enable=on,target=native"]);
+    qemu.arg("-kernel").arg(image);
+    qemu.current_dir(work()?).stdin(Stdio::null());
+    Ok(qemu)
+}
+
+/// Runs an image in QEMU to its end, without a serial port. Its exit code is for the caller
+/// to judge.
+pub fn emulate(image: &Path, options: &[&str]) -> Result<Output, Trouble> {
+    let mut qemu = qemu(image)?;
+    Ok(qemu.args(["-serial", "null"]).args(options).output()?)
+}
+
+/// Of the libraries of the compiler that builds the images.
+fn sysroot() -> Result<PathBuf, Trouble> {
+    let path = first_line("rustc", &["--print", "sysroot"])?;
+    Ok(Path::new(&path).join("lib/rustlib"))
 }
 
 /// The first line that a program prints.
 pub fn first_line(program: &str, arguments: &[&str]) -> Result<String, Trouble> {
-    let output = Command::new(program).args(arguments).output()?;
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = run(Command::new(program).args(arguments))?;
     Ok(text.lines().next().unwrap_or_default().to_string())
 }
 
-/// Version of the emulator, as it says it.
-pub fn qemu_version() -> Result<String, Trouble> {
-    first_line(QEMU, &["--version"])
-}
-
-/// A command that failed, with all that it said.
-pub fn failed(what: &str, output: &Output) -> Trouble {
-    let stdout = String::from_utf8_lossy(&output.stdout);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    Trouble::Command(format!(
-        "{what} failed ({}):\n{stdout}{stderr}",
-        output.status
-    ))
-}
-
 /// A program of the compiler's `llvm-tools`.
-pub fn llvm_tool(name: &str) -> Result<PathBuf, Trouble> {
-    let hosts = fs::read_dir(sysroot()?.join("lib/rustlib"))?;
-    hosts
-        .filter_map(|entry| Some(entry.ok()?.path().join("bin").join(name)))
-        .find(|path| path.is_file())
-        .ok_or_else(|| Trouble::Missing(vec![("llvm-tools", "rustup component add llvm-tools")]))
+pub fn llvm_tool(name: &str) -> Result<Command, Trouble> {
+    let mut hosts = fs::read_dir(sysroot()?)?
+        .filter_map(|entry| Some(entry.ok()?.path().join("bin").join(name)));
+    match hosts.find(|path| path.is_file()) {
+        Some(path) => Ok(Command::new(path)),
+        None => Err(Trouble::usage(format!("missing: {name}"))),
+    }
+}
+
+/// All files below a folder, as named from there, in order; none where there is no folder.
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, Trouble> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            for entry in fs::read_dir(&path)? {
+                open.push(entry?.path());
+            }
+        } else if path.exists() {
+            found.push(path.strip_prefix(folder)?.to_path_buf());
+        }
+    }
+    found.sort();
+    Ok(found)
 }

@@ -6,6 +6,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 use core::cell::Cell;
+use core::convert::Infallible;
 
 use controller_core::Measurement;
 use controller_core::joint::zeros;
@@ -36,29 +37,27 @@ fn expected(cycle: u32) -> Option<Cause> {
     }
 }
 
-/// The button of the board, and the script's finger on it.
-struct Switch<'a, P> {
-    button: P,
+/// The emergency stop, which the script presses: no button can be in QEMU.
+struct Switch<'a> {
     pressed: &'a Cell<bool>,
 }
 
-impl<P: ErrorType> ErrorType for Switch<'_, P> {
-    type Error = P::Error;
+impl ErrorType for Switch<'_> {
+    type Error = Infallible;
 }
 
-impl<P: InputPin> InputPin for Switch<'_, P> {
-    fn is_high(&mut self) -> Result<bool, P::Error> {
-        Ok(self.button.is_high()? && !self.pressed.get())
+impl InputPin for Switch<'_> {
+    fn is_high(&mut self) -> Result<bool, Infallible> {
+        Ok(!self.pressed.get())
     }
 
-    fn is_low(&mut self) -> Result<bool, P::Error> {
-        self.is_high().map(|high| !high)
+    fn is_low(&mut self) -> Result<bool, Infallible> {
+        Ok(self.pressed.get())
     }
 }
 
 /// Runs the script; `seen` is told every cycle. None if the constants are refused.
 fn run<T: Real>(
-    button: impl InputPin,
     drives: impl OutputPin,
     heartbeat: impl OutputPin,
     mut delay: impl DelayNs,
@@ -66,10 +65,7 @@ fn run<T: Real>(
 ) -> Option<bool> {
     let ready = ReadyScenario::<T>::new(FixedScenario::TwoLevel).ok()?;
     let pressed = Cell::new(false);
-    let switch = Switch {
-        button,
-        pressed: &pressed,
-    };
+    let switch = Switch { pressed: &pressed };
     let interlock = Interlock::new(switch, drives, heartbeat);
     let mut interlocked = InterlockedController::new(ready.controller.clone(), interlock);
     let mut as_expected = true;
@@ -98,22 +94,11 @@ fn run<T: Real>(
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
-    use core::convert::Infallible;
-
-    /// A button that nobody presses, LEDs that nobody sees, no waiting.
+    /// LEDs that nobody sees, no waiting.
     struct Nothing;
 
     impl ErrorType for Nothing {
         type Error = Infallible;
-    }
-
-    impl InputPin for Nothing {
-        fn is_high(&mut self) -> Result<bool, Infallible> {
-            Ok(true)
-        }
-        fn is_low(&mut self) -> Result<bool, Infallible> {
-            Ok(false)
-        }
     }
 
     impl OutputPin for Nothing {
@@ -130,7 +115,7 @@ fn main() -> std::process::ExitCode {
     }
 
     let mut last = None;
-    let done = run::<f64>(Nothing, Nothing, Nothing, Nothing, |cycle, output| {
+    let done = run::<f64>(Nothing, Nothing, Nothing, |cycle, output| {
         if last != Some(output.stopped) {
             last = Some(output.stopped);
             let torque = output.torque[1];
@@ -150,7 +135,8 @@ mod target {
 
     use cortex_m_rt::entry;
     use defmt_semihosting as _;
-    use firmware::mps2::{self, Button, Counter, Led};
+    use embedded_hal::digital::OutputPin;
+    use firmware::mps2::{self, Counter, Led};
 
     use super::{Cause, run};
 
@@ -163,8 +149,7 @@ mod target {
     fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
         // Safe levels first: whatever went wrong may not print.
         let (mut drives, mut heartbeat) = (Led::new(0), Led::new(1));
-        drives.force_low();
-        heartbeat.force_low();
+        let _ = (drives.set_low(), heartbeat.set_low());
         mps2::panicked(info)
     }
 
@@ -175,28 +160,22 @@ mod target {
         let mut beats = (false, 0u32);
         let mut levels = true;
         let counter = Counter::start();
-        let done = run::<f64>(
-            Button::new(0),
-            drives,
-            heartbeat,
-            counter,
-            |cycle, output| {
-                CYCLE.store(cycle, Ordering::Relaxed);
-                // The register itself, not what was meant to be written.
-                let (drives, heartbeat) = (Led::new(0).is_on(), Led::new(1).is_on());
-                levels &= drives == output.stopped.is_none();
-                beats.1 += u32::from(heartbeat != beats.0);
-                beats.0 = heartbeat;
-                if last != Some(output.stopped) {
-                    last = Some(output.stopped);
-                    match (output.stopped, output.step.status.fault) {
-                        (None, _) => defmt::info!("drives on, joint 2 {} Nm", output.torque[1]),
-                        (Some(Cause::Controller), Some(fault)) => defmt::error!("{}", fault),
-                        (Some(cause), _) => defmt::warn!("drives off, {}", cause),
-                    }
+        let done = run::<f64>(drives, heartbeat, counter, |cycle, output| {
+            CYCLE.store(cycle, Ordering::Relaxed);
+            // The register itself, not what was meant to be written.
+            let (drives, heartbeat) = (Led::new(0).is_on(), Led::new(1).is_on());
+            levels &= drives == output.stopped.is_none();
+            beats.1 += u32::from(heartbeat != beats.0);
+            beats.0 = heartbeat;
+            if last != Some(output.stopped) {
+                last = Some(output.stopped);
+                match (output.stopped, output.step.status.fault) {
+                    (None, _) => defmt::info!("drives on, joint 2 {} Nm", output.torque[1]),
+                    (Some(Cause::Controller), Some(fault)) => defmt::error!("{}", fault),
+                    (Some(cause), _) => defmt::warn!("drives off, {}", cause),
                 }
-            },
-        );
+            }
+        });
         let off = !Led::new(0).is_on() && !Led::new(1).is_on();
         defmt::info!("{} heartbeats, outputs safe at the end: {}", beats.1, off);
         mps2::exit(done == Some(true) && levels && off)

@@ -1,27 +1,24 @@
 //! The Ethernet controller LAN9118 of the board, polled: one frame in, one out.
 
-use core::ptr;
-
 use smoltcp::phy::{Device, DeviceCapabilities, Medium, RxToken, TxToken};
 use smoltcp::time::Instant;
 
-/// Base address on the mps2-an500.
-const BASE: usize = 0xa000_0000;
+use super::register::{read, write};
 
-/// Offsets of registers.
-mod register {
-    pub const RX_DATA: usize = 0x00;
-    pub const TX_DATA: usize = 0x20;
-    pub const RX_STATUS: usize = 0x40;
-    pub const TX_STATUS: usize = 0x48;
-    pub const BYTE_TEST: usize = 0x64;
-    pub const RX_CONFIG: usize = 0x6c;
-    pub const TX_CONFIG: usize = 0x70;
-    pub const HARDWARE_CONFIG: usize = 0x74;
-    pub const RX_COUNT: usize = 0x7c;
-    pub const TX_COUNT: usize = 0x80;
-    pub const MAC_COMMAND: usize = 0xa4;
-    pub const MAC_DATA: usize = 0xa8;
+/// Addresses of registers.
+mod at {
+    pub const RX_DATA: usize = 0xa000_0000;
+    pub const TX_DATA: usize = 0xa000_0020;
+    pub const RX_STATUS: usize = 0xa000_0040;
+    pub const TX_STATUS: usize = 0xa000_0048;
+    pub const BYTE_TEST: usize = 0xa000_0064;
+    pub const RX_CONFIG: usize = 0xa000_006c;
+    pub const TX_CONFIG: usize = 0xa000_0070;
+    pub const HARDWARE_CONFIG: usize = 0xa000_0074;
+    pub const RX_COUNT: usize = 0xa000_007c;
+    pub const TX_COUNT: usize = 0xa000_0080;
+    pub const MAC_COMMAND: usize = 0xa000_00a4;
+    pub const MAC_DATA: usize = 0xa000_00a8;
 }
 
 /// Registers behind the MAC command register.
@@ -38,16 +35,6 @@ mod mac {
 /// Longest Ethernet frame with its checksum, in whole words.
 const FRAME: usize = 1536;
 
-fn read(offset: usize) -> u32 {
-    // SAFETY: a register of the controller, which has no other user.
-    unsafe { ptr::read_volatile((BASE + offset) as *const u32) }
-}
-
-fn write(offset: usize, value: u32) {
-    // SAFETY: as above.
-    unsafe { ptr::write_volatile((BASE + offset) as *mut u32, value) }
-}
-
 /// The controller.
 pub struct Lan9118 {
     frame: [u8; FRAME],
@@ -58,16 +45,16 @@ impl Lan9118 {
     #[must_use]
     pub fn start(address: [u8; 6]) -> Option<Self> {
         const PATTERN: u32 = 0x8765_4321;
-        if read(register::BYTE_TEST) != PATTERN {
+        if read(at::BYTE_TEST) != PATTERN {
             return None;
         }
-        write(register::HARDWARE_CONFIG, 0x5_0000);
+        write(at::HARDWARE_CONFIG, 0x5_0000);
         let [a, b, c, d, e, f] = address;
         set_mac(mac::ADDRESS_LOW, u32::from_le_bytes([a, b, c, d]));
         set_mac(mac::ADDRESS_HIGH, u32::from_le_bytes([e, f, 0, 0]));
         set_mac(mac::CONTROL, mac::ON);
-        write(register::RX_CONFIG, 0);
-        write(register::TX_CONFIG, 2);
+        write(at::RX_CONFIG, 0);
+        write(at::TX_CONFIG, 2);
         Some(Self { frame: [0; FRAME] })
     }
 
@@ -75,11 +62,11 @@ impl Lan9118 {
     fn take(&mut self) -> Option<usize> {
         const ERROR: u32 = 1 << 15;
         const CHECKSUM: usize = 4;
-        while (read(register::RX_COUNT) >> 16) & 0xff > 0 {
-            let status = read(register::RX_STATUS);
+        while (read(at::RX_COUNT) >> 16) & 0xff > 0 {
+            let status = read(at::RX_STATUS);
             let bytes = ((status >> 16) & 0x3fff) as usize;
             for word in 0..bytes.div_ceil(4) {
-                let data = read(register::RX_DATA).to_le_bytes();
+                let data = read(at::RX_DATA).to_le_bytes();
                 let place = self.frame.get_mut(word * 4..word * 4 + 4);
                 if let Some(place) = place {
                     place.copy_from_slice(&data);
@@ -96,25 +83,25 @@ impl Lan9118 {
     fn put(frame: &[u8]) {
         const FIRST_AND_LAST: u32 = 0x3000;
         let length = frame.len() as u32;
-        write(register::TX_DATA, FIRST_AND_LAST | length);
-        write(register::TX_DATA, length);
+        write(at::TX_DATA, FIRST_AND_LAST | length);
+        write(at::TX_DATA, length);
         for chunk in frame.chunks(4) {
             let mut word = [0; 4];
             for (to, from) in word.iter_mut().zip(chunk) {
                 *to = *from;
             }
-            write(register::TX_DATA, u32::from_le_bytes(word));
+            write(at::TX_DATA, u32::from_le_bytes(word));
         }
-        while (read(register::TX_COUNT) >> 16) & 0xff > 0 {
-            read(register::TX_STATUS);
+        while (read(at::TX_COUNT) >> 16) & 0xff > 0 {
+            read(at::TX_STATUS);
         }
     }
 }
 
 fn set_mac(index: u32, value: u32) {
-    write(register::MAC_DATA, value);
-    write(register::MAC_COMMAND, mac::BUSY | index);
-    while read(register::MAC_COMMAND) & mac::BUSY != 0 {}
+    write(at::MAC_DATA, value);
+    write(at::MAC_COMMAND, mac::BUSY | index);
+    while read(at::MAC_COMMAND) & mac::BUSY != 0 {}
 }
 
 /// A frame that has come.

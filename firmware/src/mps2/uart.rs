@@ -1,29 +1,18 @@
 //! The board's first serial port, a CMSDK UART, polled.
 
 use core::convert::Infallible;
-use core::ptr;
 
 use embedded_io::{ErrorType, Read, ReadReady, Write};
 
-const BASE: usize = 0x4000_4000;
+use super::register::{read, write};
 
-const DATA: usize = 0x00;
-const STATE: usize = 0x04;
-const CONTROL: usize = 0x08;
-const DIVIDER: usize = 0x10;
+const DATA: usize = 0x4000_4000;
+const STATE: usize = 0x4000_4004;
+const CONTROL: usize = 0x4000_4008;
+const DIVIDER: usize = 0x4000_4010;
 
 const TX_FULL: u32 = 1;
 const RX_FULL: u32 = 2;
-
-fn read(offset: usize) -> u32 {
-    // SAFETY: a register of the port, which has no other user.
-    unsafe { ptr::read_volatile((BASE + offset) as *const u32) }
-}
-
-fn write(offset: usize, value: u32) {
-    // SAFETY: as above.
-    unsafe { ptr::write_volatile((BASE + offset) as *mut u32, value) }
-}
 
 /// The port.
 #[derive(Debug)]

@@ -16,9 +16,11 @@ pub struct Section {
 /// Files that are at the same height.
 #[derive(Debug)]
 pub struct Layer {
+    /// For messages.
     pub name: String,
     /// Files below `src`, and folders with `/` at their end.
     pub paths: Vec<String>,
+    /// Where it is in the list.
     pub line: usize,
 }
 

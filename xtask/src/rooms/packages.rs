@@ -2,15 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
+use std::path::PathBuf;
 
-use serde_json::Value;
+use serde::Deserialize;
 
-use crate::tools::{Trouble, failed};
-
-/// Kinds of targets whose files are not under `src` or do not belong to the product.
-const LEFT_OUT: [&str; 4] = ["bench", "custom-build", "example", "test"];
+use crate::tools::{Trouble, cargo, files, root, run};
 
 /// A crate's files under `src`.
 #[derive(Debug, Default)]
@@ -43,72 +39,65 @@ impl Package {
     }
 }
 
-/// All members of the workspace at `root` that have files under `src`, in order of their
-/// names.
-pub fn packages(root: &Path) -> Result<Vec<Package>, Trouble> {
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()))
-        .args(["metadata", "--no-deps", "--format-version", "1"])
-        .current_dir(root)
-        .output()?;
-    if !output.status.success() {
-        return Err(failed("cargo metadata", &output));
-    }
-    let metadata: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|error| Trouble::Content(format!("cargo metadata: {error}")))?;
-    let list = metadata["packages"].as_array();
-    let mut packages = Vec::new();
-    for value in list.into_iter().flatten() {
-        packages.extend(package(root, value)?);
-    }
+/// What is read of `cargo metadata`.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Manifest>,
+}
+
+#[derive(Deserialize)]
+struct Manifest {
+    name: String,
+    manifest_path: PathBuf,
+    targets: Vec<Target>,
+}
+
+#[derive(Deserialize)]
+struct Target {
+    name: String,
+    kind: Vec<String>,
+    src_path: PathBuf,
+}
+
+/// All members of the workspace that have files under `src`, in order of their names.
+pub fn packages() -> Result<Vec<Package>, Trouble> {
+    let mut command = cargo("metadata");
+    let text = run(command.args(["--no-deps", "--format-version", "1"]))?;
+    let metadata: Metadata = serde_json::from_str(&text)?;
+    let packages = metadata.packages.into_iter().map(package);
+    let mut packages: Vec<Package> = packages.collect::<Result<_, _>>()?;
+    packages.retain(|package| !package.files.is_empty());
     packages.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(packages)
 }
 
-fn package(root: &Path, value: &Value) -> Result<Option<Package>, Trouble> {
-    let manifest = Path::new(value["manifest_path"].as_str().unwrap_or_default());
-    let source = manifest.with_file_name("src");
-    if !source.is_dir() {
-        return Ok(None);
-    }
-    let folder = source.strip_prefix(root).unwrap_or(&source);
-    let targets = value["targets"].as_array();
-    let roots = targets.into_iter().flatten().filter_map(|target| {
-        let kinds = target["kind"].as_array()?;
-        let is = |name: &&str| kinds.iter().any(|kind| kind == name);
-        let path = Path::new(target["src_path"].as_str()?);
-        let file = path.strip_prefix(&source).ok()?;
-        (!LEFT_OUT.iter().any(is)).then(|| Root {
-            name: target["name"]
-                .as_str()
-                .unwrap_or_default()
-                .replace('-', "_"),
-            file: slashes(file),
-            library: !is(&"bin"),
+fn package(manifest: Manifest) -> Result<Package, Trouble> {
+    let source = manifest.manifest_path.with_file_name("src");
+    let folder = source.strip_prefix(root()).unwrap_or(&source);
+    // Tests, examples and the like are elsewhere.
+    let roots = manifest.targets.into_iter().filter_map(|target| {
+        Some(Root {
+            file: target
+                .src_path
+                .strip_prefix(&source)
+                .ok()?
+                .display()
+                .to_string(),
+            name: target.name.replace('-', "_"),
+            library: !target.kind.contains(&"bin".to_string()),
         })
     });
     let mut package = Package {
-        name: value["name"].as_str().unwrap_or_default().to_string(),
-        folder: slashes(folder),
+        name: manifest.name,
+        folder: folder.display().to_string(),
         roots: roots.collect(),
         files: BTreeMap::new(),
     };
-    read(&source, &source, &mut package.files)?;
-    Ok(Some(package))
-}
-
-fn read(source: &Path, folder: &Path, files: &mut BTreeMap<String, String>) -> Result<(), Trouble> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            read(source, &path, files)?;
-        } else if path.extension().is_some_and(|it| it == "rs") {
-            let name = slashes(path.strip_prefix(source).unwrap_or(&path));
-            files.insert(name, fs::read_to_string(&path)?);
+    for file in files(&source)? {
+        if file.extension().is_some_and(|it| it == "rs") {
+            let text = fs::read_to_string(source.join(&file))?;
+            package.files.insert(file.display().to_string(), text);
         }
     }
-    Ok(())
-}
-
-fn slashes(path: &Path) -> String {
-    path.to_string_lossy().replace('\\', "/")
+    Ok(package)
 }

@@ -184,7 +184,7 @@ fn paths_in_macros_count() {
             "b.rs -> c.rs: super::c::text",
             "c.rs -> a.rs: self::super::a::C",
             "d.rs -> a.rs: crate::a::C",
-            "d.rs -> m.rs: crate::made",
+            "d.rs -> m.rs: crate::made!",
             "e.rs -> m.rs: crate::m::Made",
             "f.rs -> lib.rs: late!",
             "m.rs -> a.rs: crate::a::A::new",
@@ -251,7 +251,7 @@ fn every_form_of_use_is_followed() {
             "x.rs -> d.rs: renamed::d",
             "x.rs -> e.rs: e::e super::e::E Named",
             "x.rs -> kind.rs: One Two crate::kind::Kind::*",
-            "x.rs -> lib.rs: crate::t::T::D",
+            "x.rs -> lib.rs: crate::t::T",
             "x.rs -> x/y.rs: self::y::Y Y",
             "x/y.rs -> x.rs: super::super::f",
         ]

@@ -1,88 +1,84 @@
-//! The modules of a crate and what is declared in each.
+//! The modules of a crate, and what a path in one of them names: imports, re-exports and
+//! globs are followed to the module that declares it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use syn::visit::{self, Visit};
-use syn::{Expr, Item, ItemMod, Lit, Meta};
+use proc_macro2::{LexError, TokenStream};
 
 use super::packages::Package;
-use super::syntax::{Way, declared, head, leaves, line, only_test, text};
+use super::text::Text;
+use super::tokens::{Child, Way};
 
 /// Index of [`Tree::modules`].
 pub type ModuleId = usize;
 
-/// What is declared: module and place in the order of declaration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Thing {
-    /// Where it is declared.
-    pub module: ModuleId,
-    number: usize,
-}
-
-/// What a name stands for.
-#[derive(Clone, Debug)]
-pub enum Name {
-    Module(ModuleId),
-    Thing(Thing),
-    Import(Way),
-}
+/// What is declared: module and name.
+pub type Thing = (ModuleId, String);
 
 /// A file, or a part of one between the braces of `mod`.
+#[derive(Debug, Default)]
 pub struct Module {
     /// Below `src`.
     pub file: String,
-    /// None of a crate's root.
-    pub parent: Option<ModuleId>,
-    /// Of the crate it belongs to: a package with programs has several.
-    pub root: ModuleId,
     /// Compiled for tests only.
     pub test: bool,
-    /// Everything that has a name here, imports in bodies of functions too.
-    pub names: BTreeMap<String, Vec<Name>>,
-    /// What is before `*`.
-    pub globs: Vec<Way>,
-    /// Of `macro_rules!`: there in all modules below.
-    pub macros: BTreeMap<String, Thing>,
-    /// What a macro may have declared here.
-    pub unknown: Thing,
-    /// Everything but modules.
-    pub items: Vec<Item>,
+    /// All that it says.
+    pub text: Text,
+    /// None of a crate's root.
+    parent: Option<ModuleId>,
+    /// Of the crate it belongs to: a package with programs has several.
+    root: ModuleId,
+    children: BTreeMap<String, ModuleId>,
     /// Where files of its modules are.
     folder: String,
-    things: usize,
 }
 
 /// All modules of a package.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Tree {
+    /// Each behind the one that it is in.
     pub modules: Vec<Module>,
-    /// Of each `enum`.
-    pub variants: BTreeMap<Thing, BTreeSet<String>>,
-    /// Name and root of the library, which programs of the package name from outside.
-    pub library: Option<(String, ModuleId)>,
     /// What is wrong with the tree itself.
     pub problems: Vec<String>,
+    /// Name and root of the library, which programs of the package name from outside.
+    library: Option<(String, ModuleId)>,
 }
+
+/// What a path leads to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// The path names a module.
+    Module(ModuleId),
+    /// A declaration, and the segment behind it: variant, method, constant.
+    Thing(Thing, Option<String>),
+    /// Of another crate.
+    Outside,
+}
+
+/// Names that are looked up at the moment: imports may go round in a circle.
+type Pending = Vec<(ModuleId, String)>;
 
 impl Tree {
     /// Reads all files of the package.
     pub fn new(package: &Package) -> Self {
         let mut tree = Self::default();
         for root in &package.roots {
-            let folder = folder_of(&root.file).to_string();
-            let id = tree.add(None, &root.file, folder, false);
+            let folder = root.file.rsplit_once('/').map_or("", |(folder, _)| folder);
+            let module = Module {
+                file: root.file.clone(),
+                folder: folder.into(),
+                root: tree.modules.len(),
+                ..Module::default()
+            };
             if root.library {
-                tree.library = Some((root.name.clone(), id));
+                tree.library = Some((root.name.clone(), module.root));
             }
-            tree.read(package, id);
+            tree.add(package, module, None);
         }
-        let known: BTreeSet<&str> = tree.modules.iter().map(|it| it.file.as_str()).collect();
-        let unknown = package
-            .files
-            .keys()
-            .filter(|file| !known.contains(file.as_str()));
+        let known: BTreeSet<&String> = tree.modules.iter().map(|it| &it.file).collect();
+        let unknown = package.files.keys().filter(|file| !known.contains(file));
         let lines = unknown.map(|file| format!("{}: no `mod` names it", package.path(file)));
-        tree.problems.extend(lines.collect::<Vec<_>>());
+        tree.problems.extend(lines);
         tree
     }
 
@@ -92,211 +88,176 @@ impl Tree {
         modules.map(|module| module.file.as_str()).collect()
     }
 
-    /// The macro of this name that is there by the order of the text, not by a path.
-    pub fn textual_macro(&self, from: ModuleId, name: &str) -> Option<Thing> {
-        let mut here = Some(from);
-        while let Some(module) = here.map(|id| &self.modules[id]) {
-            if let Some(thing) = module.macros.get(name) {
-                return Some(*thing);
+    /// Adds a module and those below it; without a body it is the whole file.
+    fn add(&mut self, package: &Package, mut module: Module, body: Option<TokenStream>) {
+        let path = package.path(&module.file);
+        let tokens = body.unwrap_or_else(|| {
+            let text = package.files.get(&module.file).map_or("", String::as_str);
+            text.parse().unwrap_or_else(|error: LexError| {
+                let line = error.span().start().line;
+                self.problems.push(format!("{path}:{line}: {error}"));
+                TokenStream::new()
+            })
+        });
+        module.text = Text::new(tokens);
+        let children = std::mem::take(&mut module.text.children);
+        let id = self.modules.len();
+        self.modules.push(module);
+        for Child {
+            name,
+            line,
+            test,
+            body,
+        } in children
+        {
+            let parent = &self.modules[id];
+            let folder = [&parent.folder, &name].map(String::as_str).join("/");
+            let folder = folder.trim_start_matches('/').to_string();
+            let files = [format!("{folder}.rs"), format!("{folder}/mod.rs")];
+            let mut files = files
+                .into_iter()
+                .filter(|it| package.files.contains_key(it));
+            let file = match &body {
+                Some(_) => Some(parent.file.clone()),
+                None => files.next(),
+            };
+            let Some(file) = file else {
+                self.problems
+                    .push(format!("{path}:{line}: mod {name}: no file"));
+                continue;
+            };
+            let test = test || parent.test;
+            let module = Module {
+                file,
+                folder,
+                test,
+                root: parent.root,
+                parent: Some(id),
+                ..Module::default()
+            };
+            if !test {
+                let child = self.modules.len();
+                self.modules[id].children.insert(name, child);
             }
-            here = module.parent;
+            self.add(package, module, body);
         }
-        None
     }
 
     /// Whether `module` is `ancestor` or below it.
     pub fn is_within(&self, module: ModuleId, ancestor: ModuleId) -> bool {
-        let mut here = Some(module);
-        while let Some(id) = here {
-            if id == ancestor {
-                return true;
-            }
-            here = self.modules[id].parent;
-        }
-        false
+        self.ancestors(module).any(|id| id == ancestor)
     }
 
-    fn add(&mut self, parent: Option<ModuleId>, file: &str, folder: String, test: bool) -> usize {
-        let id = self.modules.len();
-        self.modules.push(Module {
-            file: file.to_string(),
-            parent,
-            root: parent.map_or(id, |parent| self.modules[parent].root),
-            test: test || parent.is_some_and(|parent| self.modules[parent].test),
-            names: BTreeMap::new(),
-            globs: Vec::new(),
-            macros: BTreeMap::new(),
-            unknown: Thing {
-                module: id,
-                number: 0,
+    /// The module and those that it is in, outward.
+    fn ancestors(&self, module: ModuleId) -> impl Iterator<Item = ModuleId> {
+        std::iter::successors(Some(module), |&id| self.modules[id].parent)
+    }
+
+    /// What a path written in `from` names, in all namespaces. Empty where its first name is
+    /// not of this package.
+    pub fn resolve(&self, from: ModuleId, way: &Way) -> Vec<Found> {
+        self.walk(from, way, &mut Pending::new())
+    }
+
+    fn walk(&self, from: ModuleId, way: &Way, pending: &mut Pending) -> Vec<Found> {
+        let Some((first, rest)) = way.segments.split_first() else {
+            return vec![Found::Module(from)];
+        };
+        let library = || {
+            let library = self.library.iter().filter(|(name, _)| name == first);
+            library.map(|(_, root)| Found::Module(*root)).collect()
+        };
+        let mut here: Vec<Found> = match first.as_str() {
+            _ if way.outside => library(),
+            "crate" => vec![Found::Module(self.modules[from].root)],
+            "self" | "super" => self.behind(from, first, pending),
+            name if name.ends_with('!') && rest.is_empty() => {
+                // By the order of the text, not by a path.
+                let declares = |id: &ModuleId| self.modules[*id].text.declared.contains(name);
+                match self.ancestors(from).find(declares) {
+                    Some(id) => vec![Found::Thing((id, name.into()), None)],
+                    None => self.lookup(from, name, pending),
+                }
+            }
+            name => {
+                let found = self.lookup(from, name, pending);
+                if found.is_empty() { library() } else { found }
+            }
+        };
+        for segment in rest {
+            // A function may have the name of a module, but nothing is behind it.
+            if here.iter().any(|it| matches!(it, Found::Module(_))) {
+                here.retain(|it| matches!(it, Found::Module(_)));
+            }
+            let step = |place| match place {
+                Found::Module(id) => self.behind(id, segment, pending),
+                Found::Thing(thing, then) => {
+                    vec![Found::Thing(thing, then.or_else(|| Some(segment.clone())))]
+                }
+                Found::Outside => vec![Found::Outside],
+            };
+            here = here.into_iter().flat_map(step).collect();
+        }
+        here
+    }
+
+    /// What `segment` is in a module. What is not found there is made by a macro.
+    fn behind(&self, id: ModuleId, segment: &str, pending: &mut Pending) -> Vec<Found> {
+        match segment {
+            "self" => vec![Found::Module(id)],
+            "super" => self.modules[id]
+                .parent
+                .map(Found::Module)
+                .into_iter()
+                .collect(),
+            name => match self.lookup(id, name, pending) {
+                found if found.is_empty() => vec![Found::Thing((id, name.into()), None)],
+                found => found,
             },
-            items: Vec::new(),
-            folder,
-            things: 0,
-        });
-        id
-    }
-
-    fn read(&mut self, package: &Package, id: ModuleId) {
-        let file = &self.modules[id].file;
-        let path = package.path(file);
-        match package.files.get(file).map(|text| syn::parse_file(text)) {
-            Some(Ok(parsed)) => self.declare(package, id, parsed.items),
-            Some(Err(error)) => {
-                let line = error.span().start().line;
-                self.problems.push(format!("{path}:{line}: {error}"));
-            }
-            None => self.problems.push(format!("{path}: not there")),
         }
     }
 
-    fn declare(&mut self, package: &Package, id: ModuleId, items: Vec<Item>) {
-        for item in items {
-            let test = only_test(head(&item).0);
-            match item {
-                Item::Mod(module) => self.declare_module(package, id, module, test),
-                _ if test => {}
-                item => {
-                    Names { tree: self, id }.visit_item(&item);
-                    self.modules[id].items.push(item);
+    fn lookup(&self, id: ModuleId, name: &str, pending: &mut Pending) -> Vec<Found> {
+        let asked = (id, name.to_string());
+        if pending.contains(&asked) {
+            return Vec::new();
+        }
+        let module = &self.modules[id];
+        let mut found: Vec<Found> = (module.children.get(name).copied().map(Found::Module))
+            .into_iter()
+            .collect();
+        let declares = |(other, it): &(ModuleId, &Module)| {
+            *other == id && it.text.declared.contains(name)
+                || it.root == id && it.text.exported.contains(name)
+        };
+        let declaring = self.modules.iter().enumerate().filter(declares);
+        found.extend(declaring.map(|(id, _)| Found::Thing((id, name.into()), None)));
+        pending.push(asked);
+        for import in module.text.imports.iter().filter(|it| it.name == name) {
+            match self.walk(id, &import.way, pending) {
+                places if places.is_empty() => found.push(Found::Outside),
+                places => found.extend(places),
+            }
+        }
+        if found.is_empty() {
+            for glob in module.text.imports.iter().filter(|it| it.name == "*") {
+                for place in self.walk(id, &glob.way, pending) {
+                    match place {
+                        Found::Module(id) => found.extend(self.lookup(id, name, pending)),
+                        Found::Thing(thing, None) if self.has_variant(&thing, name) => {
+                            found.push(Found::Thing(thing, Some(name.to_string())));
+                        }
+                        Found::Thing(..) | Found::Outside => {}
+                    }
                 }
             }
         }
+        pending.pop();
+        found
     }
 
-    fn declare_module(&mut self, package: &Package, id: ModuleId, item: ItemMod, test: bool) {
-        let parent = &self.modules[id];
-        let name = text(&item.ident);
-        let inner = join(&parent.folder, &name);
-        let child = if let Some((_, items)) = item.content {
-            let file = parent.file.clone();
-            let child = self.add(Some(id), &file, inner, test);
-            self.declare(package, child, items);
-            child
-        } else {
-            let explicit = item.attrs.iter().find_map(explicit_path);
-            let candidates = match explicit {
-                Some(path) => vec![join(folder_of(&parent.file), &path)],
-                None => vec![format!("{inner}.rs"), format!("{inner}/mod.rs")],
-            };
-            let found = candidates
-                .iter()
-                .find(|file| package.files.contains_key(*file));
-            let Some(file) = found else {
-                let (path, line) = (package.path(&parent.file), line(&item.ident));
-                self.problems
-                    .push(format!("{path}:{line}: mod {name}: no file"));
-                return;
-            };
-            let folder = match file.strip_suffix("mod.rs") {
-                Some(folder) => folder.trim_end_matches('/').to_string(),
-                None => file.trim_end_matches(".rs").to_string(),
-            };
-            let child = self.add(Some(id), file, folder, test);
-            self.read(package, child);
-            child
-        };
-        if !test {
-            self.name(id, &name, Name::Module(child));
-        }
-    }
-
-    fn name(&mut self, id: ModuleId, name: &str, what: Name) {
-        let names = &mut self.modules[id].names;
-        names.entry(name.to_string()).or_default().push(what);
-    }
-
-    fn thing(&mut self, id: ModuleId, name: &str) -> Thing {
-        let module = &mut self.modules[id];
-        module.things += 1;
-        let thing = Thing {
-            module: id,
-            number: module.things,
-        };
-        self.name(id, name, Name::Thing(thing));
-        thing
-    }
-}
-
-/// Puts what an item declares into its module, what is in bodies too: names that are there
-/// in one function only count in the whole module.
-struct Names<'a> {
-    tree: &'a mut Tree,
-    id: ModuleId,
-}
-
-impl<'ast> Visit<'ast> for Names<'_> {
-    fn visit_item(&mut self, item: &'ast Item) {
-        let (attributes, name) = head(item);
-        if only_test(attributes) {
-            return;
-        }
-        let thing = name.map(|name| (text(name), self.tree.thing(self.id, &text(name))));
-        if let (Item::Enum(item), Some((_, thing))) = (item, &thing) {
-            let names = item.variants.iter().map(|variant| text(&variant.ident));
-            self.tree.variants.insert(*thing, names.collect());
-        }
-        if let Item::Macro(item) = item {
-            for name in declared(item.mac.tokens.clone(), item.ident.is_none()) {
-                self.tree.thing(self.id, &name);
-            }
-            if let Some((name, thing)) = thing {
-                if item
-                    .attrs
-                    .iter()
-                    .any(|it| it.path().is_ident("macro_export"))
-                {
-                    let root = self.tree.modules[self.id].root;
-                    self.tree.name(root, &name, Name::Thing(thing));
-                }
-                self.tree.modules[self.id].macros.insert(name, thing);
-            }
-        }
-        visit::visit_item(self, item);
-    }
-
-    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
-        for leaf in leaves(item) {
-            if leaf.glob {
-                self.tree.modules[self.id].globs.push(leaf.way);
-            } else if let Some(name) = leaf.name {
-                self.tree.name(self.id, &name, Name::Import(leaf.way));
-            }
-        }
-    }
-
-    fn visit_item_foreign_mod(&mut self, item: &'ast syn::ItemForeignMod) {
-        for item in &item.items {
-            match item {
-                syn::ForeignItem::Fn(item) => self.tree.thing(self.id, &text(&item.sig.ident)),
-                syn::ForeignItem::Static(item) => self.tree.thing(self.id, &text(&item.ident)),
-                _ => continue,
-            };
-        }
-    }
-}
-
-fn explicit_path(attribute: &syn::Attribute) -> Option<String> {
-    match &attribute.meta {
-        Meta::NameValue(pair) if pair.path.is_ident("path") => match &pair.value {
-            Expr::Lit(value) => match &value.lit {
-                Lit::Str(path) => Some(path.value()),
-                _ => None,
-            },
-            _ => None,
-        },
-        _ => None,
-    }
-}
-
-fn folder_of(file: &str) -> &str {
-    file.rsplit_once('/').map_or("", |(folder, _)| folder)
-}
-
-fn join(folder: &str, name: &str) -> String {
-    if folder.is_empty() {
-        name.to_string()
-    } else {
-        format!("{folder}/{name}")
+    fn has_variant(&self, (id, kind): &Thing, name: &str) -> bool {
+        let variants = self.modules[*id].text.variants.get(kind);
+        variants.is_some_and(|variants| variants.contains(name))
     }
 }

@@ -1,12 +1,10 @@
 //! Where a program to compare comes from.
 
-use std::fmt;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
-use crate::tools::{Trouble, failed};
+use crate::tools::{Trouble, cargo, program, root, run, target};
 
 /// A program, or the code to build it from.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,143 +17,58 @@ pub enum Source {
     WorkingTree,
 }
 
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File(path) => path.display().fmt(f),
-            Self::Revision(commit) => write!(f, "revision {commit}"),
-            Self::WorkingTree => f.write_str("working tree"),
-        }
-    }
-}
-
-/// The workspace and where it builds to.
-#[derive(Debug)]
-pub struct Place {
-    root: PathBuf,
-    build: PathBuf,
-    /// Of everything that comparisons leave.
-    pub folder: PathBuf,
-}
-
-impl Place {
-    /// That of this program's source.
-    pub fn find() -> io::Result<Self> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("..")
-            .canonicalize()?;
-        let build = std::env::var_os("CARGO_TARGET_DIR")
-            .map_or_else(|| root.join("target"), |path| root.join(path));
-        let folder = build.join("same-bytes");
-        Ok(Self {
-            root,
-            build,
-            folder,
-        })
-    }
-
+impl Source {
     /// What `word` names; a file rather than a revision of the same name.
-    pub fn source(&self, what: &str, word: &str) -> Result<Source, String> {
+    pub fn named(what: &str, word: &str) -> Result<Self, Trouble> {
         if Path::new(word).is_file() {
-            return Ok(Source::File(word.into()));
+            return Ok(Self::File(word.into()));
         }
         let commit = format!("{word}^{{commit}}");
-        let output = git(
-            &self.root,
-            &[
-                "rev-parse",
-                "--verify",
-                "--quiet",
-                "--end-of-options",
-                &commit,
-            ],
-        );
-        match output {
-            Ok(output) if output.status.success() => Ok(Source::Revision(text(&output))),
-            _ => Err(format!(
+        let options = ["rev-parse", "--verify", "--quiet", "--end-of-options"];
+        match run(git(&options).arg(commit)) {
+            Ok(commit) => Ok(Self::Revision(commit.trim().into())),
+            Err(_) => Err(Trouble::usage(format!(
                 "{what}: '{word}'; allowed: the path of a hil-sim executable, or a git revision"
-            )),
+            ))),
         }
     }
 
     /// The executable, built if it has to be.
-    pub fn program(&self, source: &Source) -> Result<PathBuf, Trouble> {
-        match source {
-            Source::File(path) => Ok(path.clone()),
-            Source::WorkingTree => build(&self.root, &self.build),
-            Source::Revision(commit) => {
-                let folder = self.folder.join(commit);
-                let tree = folder.join("tree");
-                self.check_out(&tree, commit)?;
-                build(&tree, &folder.join("build"))
+    pub fn program(&self) -> Result<PathBuf, Trouble> {
+        let commit = match self {
+            Self::File(path) => return Ok(path.clone()),
+            Self::WorkingTree => return program("hil-sim", "hil-sim"),
+            Self::Revision(commit) => commit,
+        };
+        let folder = target().join("same-bytes");
+        let kept = folder.join(format!("hil-sim-{commit}"));
+        if !kept.exists() {
+            // Left behind by a comparison that was ended.
+            let tree = folder.join(commit);
+            if tree.exists() {
+                fs::remove_dir_all(&tree)?;
             }
+            let add = ["worktree", "add", "--quiet", "--force", "--detach"];
+            run(git(&add).arg(&tree).arg(commit))?;
+            let build = folder.join("build");
+            let mut cargo = cargo("build");
+            cargo
+                .args(["--release", "-p", "hil-sim", "--target-dir"])
+                .arg(&build);
+            run(cargo.current_dir(&tree))?;
+            fs::copy(build.join("release/hil-sim"), &kept)?;
+            run(git(&["worktree", "remove", "--force"]).arg(&tree))?;
         }
-    }
-
-    /// Makes the work tree. One that is there already is used again if it is what it
-    /// should be, so that cargo builds only what it has to.
-    fn check_out(&self, tree: &Path, commit: &str) -> Result<(), Trouble> {
-        if is_at(tree, commit) {
-            return Ok(());
-        }
-        if tree.exists() {
-            fs::remove_dir_all(tree)?;
-        }
-        // Work trees whose folder is gone, by us or by `cargo clean`.
-        let path = tree.to_string_lossy();
-        for arguments in [
-            &["worktree", "prune"][..],
-            &["worktree", "add", "--quiet", "--detach", &path, commit],
-        ] {
-            let output = git(&self.root, arguments)?;
-            if !output.status.success() {
-                return Err(failed(&format!("git {}", arguments.join(" ")), &output));
-            }
-        }
-        Ok(())
+        Ok(kept)
     }
 }
 
-/// Whether this is a work tree of its own with that commit and nothing else. A folder
-/// that is none would answer for the repository around it.
-fn is_at(tree: &Path, commit: &str) -> bool {
-    let says = |arguments: &[&str]| -> Option<String> {
-        let output = git(tree, arguments).ok()?;
-        output.status.success().then(|| text(&output))
-    };
-    tree.is_dir()
-        && says(&["rev-parse", "--show-prefix"]).as_deref() == Some("")
-        && says(&["rev-parse", "HEAD"]).as_deref() == Some(commit)
-        && says(&["status", "--porcelain"]).as_deref() == Some("")
-}
-
-fn build(tree: &Path, target: &Path) -> Result<PathBuf, Trouble> {
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()))
-        .args(["build", "--quiet", "--release", "-p", "hil-sim"])
-        .arg("--target-dir")
-        .arg(target)
-        .current_dir(tree)
-        .output()?;
-    if !output.status.success() {
-        return Err(failed(
-            &format!("build of hil-sim in {}", tree.display()),
-            &output,
-        ));
+/// Git in the workspace; not in the repository of a hook that this may run in.
+fn git(arguments: &[&str]) -> Command {
+    let mut git = Command::new("git");
+    git.args(arguments).current_dir(root());
+    for variable in ["GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE"] {
+        git.env_remove(variable);
     }
-    Ok(target.join("release").join("hil-sim"))
-}
-
-/// Runs git in a folder; not in the repository of a hook that this may run in.
-fn git(folder: &Path, arguments: &[&str]) -> io::Result<Output> {
-    Command::new("git")
-        .args(arguments)
-        .current_dir(folder)
-        .env_remove("GIT_DIR")
-        .env_remove("GIT_WORK_TREE")
-        .env_remove("GIT_INDEX_FILE")
-        .output()
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).trim().to_string()
+    git
 }

@@ -3,6 +3,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use rand::seq::IndexedRandom;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
 const COUNT: usize = 200;
@@ -21,16 +24,8 @@ const CONTROLLERS: [&str; 6] = [
 /// Of the core's table of this arm, as the limits.
 const POINTS: [&str; 5] = ["upper", "elbow", "forearm", "wrist", "flange"];
 
-/// Largest joint angle \[rad\], both ways.
-const LIMITS: [f64; 7] = [
-    170.0_f64.to_radians(),
-    120.0_f64.to_radians(),
-    170.0_f64.to_radians(),
-    120.0_f64.to_radians(),
-    170.0_f64.to_radians(),
-    120.0_f64.to_radians(),
-    170.0_f64.to_radians(),
-];
+/// Largest joint angle \[degrees\], both ways.
+const LIMITS_DEG: [f64; 7] = [170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 170.0];
 
 /// Sets of axes by their number.
 const AXES: [&[&str]; 3] = [&["x", "y", "z"], &["xy", "xz", "yz"], &["xyz"]];
@@ -41,7 +36,7 @@ const MAX_ROWS: usize = 7;
 /// All of them. Of ten states in a row three have an orientation level, of 1, 2 and 3
 /// rows, under another controller each time.
 pub fn all() -> Vec<Value> {
-    let mut random = Random(SEED);
+    let mut random = Random(ChaCha8Rng::seed_from_u64(SEED));
     (0..COUNT)
         .map(|index| {
             let turned = (index % 10 < 3).then_some(index % 10 + 1);
@@ -51,39 +46,20 @@ pub fn all() -> Vec<Value> {
         .collect()
 }
 
-/// SplitMix64: the same numbers everywhere, and no dependency.
-struct Random(u64);
+/// The same numbers everywhere.
+struct Random(ChaCha8Rng);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Below `end`.
     fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
+        self.0.random_range(..end)
     }
 
     fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }
 
-    fn pick<'a>(&mut self, from: &[&'a str]) -> &'a str {
-        from[self.below(from.len())]
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        // 53 bits, as a double has.
-        let unit = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * unit
-    }
-
     fn many(&mut self, count: usize, low: f64, high: f64) -> Vec<f64> {
-        (0..count).map(|_| self.between(low, high)).collect()
+        (0..count).map(|_| self.0.random_range(low..high)).collect()
     }
 
     fn joints(&mut self, size: f64) -> Vec<f64> {
@@ -116,7 +92,7 @@ impl Random {
                 "input_prev": self.joints(20.0),
                 "residual_prev": self.joints(5.0),
                 "gain": self.many(7, 0.0, 200.0),
-                "h": self.between(0.0005, 0.02),
+                "h": self.0.random_range(0.0005..0.02),
             });
         }
         state
@@ -125,13 +101,13 @@ impl Random {
     /// Angles; in some states joints stand at zero or at a right angle, where rows
     /// cannot be resolved.
     fn posture(&mut self) -> Vec<f64> {
-        let mut angles: Vec<f64> = LIMITS.map(|limit| self.between(-limit, limit)).into();
-        if self.one_in(6) {
-            for angle in &mut angles {
-                *angle = [0.0, 0.0, FRAC_PI_2, *angle][self.below(4)];
-            }
-        }
-        angles
+        let special = self.one_in(6);
+        let angle = |limit: f64| {
+            let angle = self.0.random_range(-limit..limit).to_radians();
+            let choice = self.below(if special { 4 } else { 1 });
+            [angle, 0.0, 0.0, FRAC_PI_2][choice]
+        };
+        LIMITS_DEG.map(angle).into()
     }
 
     /// 1 to 3 levels.
@@ -158,7 +134,7 @@ impl Random {
         json!({
             "task": if turned { "orientation" } else { "position" },
             "point": self.point(),
-            "axes": self.pick(AXES[rows - 1]),
+            "axes": AXES[rows - 1].choose(&mut self.0),
             "x": if turned { self.quaternion() } else { self.many(rows, -0.9, 0.9) },
             "dx": self.many(rows, -0.5, 0.5),
             "ddx": self.many(rows, -1.0, 1.0),
@@ -171,7 +147,7 @@ impl Random {
         if self.one_in(6) {
             json!({ "link": 1 + self.below(7), "offset_m": self.many(3, -0.3, 0.3) })
         } else {
-            json!(self.pick(&POINTS))
+            json!(POINTS.choose(&mut self.0))
         }
     }
 
@@ -181,7 +157,7 @@ impl Random {
             let values = self.many(4, -1.0, 1.0);
             let norm = values.iter().map(|x| x * x).sum::<f64>().sqrt();
             if norm > 0.1 {
-                let length = self.between(0.8, 1.2);
+                let length = self.0.random_range(0.8..1.2);
                 return values.iter().map(|x| x / norm * length).collect();
             }
         }
@@ -226,8 +202,8 @@ mod tests {
         let mut most = 0;
         for state in &states {
             let q = state["q"].as_array().expect("q");
-            for (q, limit) in q.iter().zip(LIMITS) {
-                assert!(q.as_f64().expect("number").abs() <= limit);
+            for (q, limit) in q.iter().zip(LIMITS_DEG) {
+                assert!(q.as_f64().expect("number").to_degrees().abs() <= limit + 1e-9);
             }
             let rows: usize = levels(state).iter().map(rows).sum();
             assert!(rows <= MAX_ROWS);
