@@ -103,7 +103,7 @@ impl Krc {
             jumping: false,
             good: 0,
             passage: Passage::none(cycles(options.fade_s, cycle_s), cycle_s),
-            last: Driving::by_springs(Impedance::none()),
+            last: Driving::by_springs(Impedance::NONE),
             arrived: JointVector::zeros(),
             change: JointVector::zeros(),
             answer_int: 10,
@@ -380,7 +380,7 @@ impl Krc {
     fn ordered(&self, now: &Now<'_>, added: &mut Pipe) -> Driving {
         let none = JointVector::zeros();
         let Some(order) = &self.order else {
-            return Driving::by_springs(Impedance::none());
+            return Driving::by_springs(Impedance::NONE);
         };
         match self.scheme {
             Scheme::Position => Driving {
