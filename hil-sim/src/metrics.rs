@@ -93,11 +93,15 @@ impl LevelFigures {
         self.max_mm.or(self.max_mrad)
     }
 
+    /// Plateaus of the contacts, in the level's unit; none that was not reached.
+    pub fn plateaus(&self) -> impl Iterator<Item = Option<f64>> {
+        self.plateau_mm.iter().chain(&self.plateau_mrad).copied()
+    }
+
     /// The largest plateau that was reached, in the level's unit.
     #[must_use]
     pub fn worst_plateau(&self) -> Option<f64> {
-        let plateaus = self.plateau_mm.iter().chain(&self.plateau_mrad);
-        plateaus.flatten().copied().reduce(f64::max)
+        self.plateaus().flatten().reduce(f64::max)
     }
 }
 

@@ -53,7 +53,7 @@ pub struct Claim {
     /// Its unit.
     pub unit: &'static str,
     /// What it is held against; see `sense`.
-    pub limit: Option<f64>,
+    pub limit: f64,
     /// "below", "at least".
     pub sense: &'static str,
     /// Verdict.
@@ -66,15 +66,8 @@ impl Claim {
     /// "0.459 mm, below 0.55".
     #[must_use]
     pub fn figure(&self) -> String {
-        let limit = self
-            .limit
-            .map(|limit| format!(", {} {}", self.sense, shown(limit)));
-        format!(
-            "{} {}{}",
-            ticks::figure(self.measured),
-            self.unit,
-            limit.unwrap_or_default()
-        )
+        let (measured, unit) = (ticks::figure(self.measured), self.unit);
+        format!("{measured} {unit}, {} {}", self.sense, shown(self.limit))
     }
 }
 
@@ -133,7 +126,7 @@ impl Section {
             claim: claim.to_string(),
             measured: found.value,
             unit,
-            limit: Some(limit),
+            limit,
             sense: word,
             verdict,
             run: found.run,
@@ -166,6 +159,25 @@ fn ratio(
         value: least.value / worst.value,
         run: least.run,
     }
+}
+
+/// How many claims have this verdict.
+#[must_use]
+pub fn count(claims: &[Claim], verdict: Verdict) -> usize {
+    let with = claims.iter().filter(|claim| claim.verdict == verdict);
+    with.count()
+}
+
+/// "30 confirmed, 11 not confirmed, 0 out of limit".
+#[must_use]
+pub fn tally(claims: &[Claim]) -> String {
+    let verdicts = [
+        Verdict::Confirmed,
+        Verdict::NotConfirmed,
+        Verdict::OutOfLimit,
+    ];
+    let counts = verdicts.map(|verdict| format!("{} {}", count(claims, verdict), verdict.name()));
+    counts.join(", ")
 }
 
 /// Every claim.

@@ -10,6 +10,7 @@ use controller_core::joint::JointState;
 use record::channel::{Channel, Value};
 use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
+use super::plot::{Series, Style};
 use crate::contact::Contacts;
 use crate::plant::PlantModel;
 
@@ -190,6 +191,12 @@ impl Recording {
             column.extend(extremes(block));
             block.clear();
         }
+    }
+
+    /// A line of one of the series over time.
+    #[must_use]
+    pub fn line(&self, label: impl Into<String>, values: &[f64], style: Style) -> Series {
+        Series::new(label, &self.t, values, style)
     }
 
     /// Times \[s\] of all series.
