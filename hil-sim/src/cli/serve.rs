@@ -204,7 +204,7 @@ impl ServeOptions {
         let mut robot = Robot::new(setup);
         let mut sink = |instant: &Sample| files.push(&scenario, instant);
         let end = service
-            .run(&mut robot, &mut operator, &mut client, &mut sink)
+            .run(&mut robot, &mut operator, &mut *client, &mut sink)
             .map_err(|error| Invalid::line(error).within(&service.client))?;
         match end {
             End::Finished => (),

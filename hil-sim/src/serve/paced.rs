@@ -18,7 +18,7 @@ pub(super) fn run(
     service: &Service,
     robot: &mut Robot,
     operator: &mut Operator,
-    client: &mut impl Transport,
+    client: &mut dyn Transport,
     mut sink: impl FnMut(&Sample) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
@@ -88,7 +88,7 @@ impl Schedule {
     }
 
     /// Sends the measurement and takes answers until the cycle is over.
-    fn cycle(&mut self, robot: &mut Robot, client: &mut impl Transport) -> io::Result<()> {
+    fn cycle(&mut self, robot: &mut Robot, client: &mut dyn Transport) -> io::Result<()> {
         let start = (robot.cycle() - self.first) as f64 * self.cycle_s;
         let asleep_s = self.now_s() - start;
         if asleep_s > self.cycle_s {
