@@ -5,6 +5,7 @@
 //! [`stability`] follows the Lyapunov functions; [`figures`](mod@figures) and
 //! [`page`] show all of it.
 
+pub mod claim;
 pub mod claims;
 pub mod figures;
 pub mod page;
@@ -18,7 +19,7 @@ use std::path::Path;
 use crate::output;
 use cell::invalid::Invalid;
 use cell::terminal::{print, show};
-use claims::{Claim, Verdict};
+use claim::{Claim, Verdict};
 use results::Results;
 
 /// Does everything and writes it to `out`: report.html, verdicts.json, figures,
@@ -59,7 +60,7 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
     output::write(out, "report.html", &report)?;
 
     print(text(&claims, out))?;
-    Ok(u8::from(claims::count(&claims, Verdict::OutOfLimit) > 0))
+    Ok(u8::from(claim::count(&claims, Verdict::OutOfLimit) > 0))
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Invalid> {
@@ -77,7 +78,7 @@ fn text(claims: &[Claim], out: &Path) -> String {
     let rows: String = claims.iter().map(row).collect();
     format!(
         "{rows}\n{}\nreport.html, verdicts.json, figures and runs are in {}\n",
-        claims::tally(claims),
+        claim::tally(claims),
         out.display()
     )
 }

@@ -1,6 +1,6 @@
 //! The report of all experiments: one HTML file that needs nothing else.
 
-use super::claims::{self, Claim, Verdict};
+use super::claim::{self, Claim, Verdict};
 use super::results::{Outcome, Results};
 use super::stability::Evidence;
 use crate::metrics::LevelFigures;
@@ -66,11 +66,11 @@ fn header() -> String {
 }
 
 fn banner(claims: &[Claim]) -> String {
-    let (class, word) = match claims::count(claims, Verdict::OutOfLimit) {
+    let (class, word) = match claim::count(claims, Verdict::OutOfLimit) {
         0 => ("pass", "ALL LIMITS KEPT"),
         _ => ("fail", "OUT OF LIMIT"),
     };
-    html::verdict(class, word, &[&format!("{}.", claims::tally(claims))])
+    html::verdict(class, word, &[&format!("{}.", claim::tally(claims))])
 }
 
 fn claims_table<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
@@ -87,7 +87,7 @@ fn claims_table<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
             &escape(&claim.claim),
             [
                 format!("#{}\u{a0}{}", ticks::figure(claim.measured), claim.unit),
-                format!("#{}\u{a0}{}", claim.sense, claims::shown(claim.limit)),
+                format!("#{}\u{a0}{}", claim.sense, claim::shown(claim.limit)),
                 format!("<span class=\"{class}\">{mark}\u{a0}{verdict}</span>"),
                 format!("<code>{}</code>", escape(&claim.run)),
             ],

@@ -47,6 +47,17 @@ pub struct Worst {
     pub run: String,
 }
 
+impl Worst {
+    /// How many times that of another family it is.
+    #[must_use]
+    pub fn over(self, other: &Self) -> Self {
+        Self {
+            value: self.value / other.value,
+            ..self
+        }
+    }
+}
+
 impl Results {
     /// Runs everything on all cores. `progress` is told how many of all are done.
     ///

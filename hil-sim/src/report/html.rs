@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::svg::{Svg, escape};
 use super::ticks::plain;
-use super::{Run, diagram, figures, palette, tables};
+use super::{Run, diagram, figures, palette, settings, tables};
 use crate::summary::{Summary, Verdict};
 use cell::names::{Named, Switch};
 use cell::scenario::Scenario;
@@ -25,7 +25,7 @@ pub fn run_report(run: &Run<'_>) -> String {
     if let Some(link) = &run.summary.link {
         section(&mut body, "Link", &tables::link(link));
     }
-    section(&mut body, "Settings", &tables::settings(run));
+    section(&mut body, "Settings", &settings::settings(run));
     body += &footer(run);
     page(&title, &body)
 }

@@ -17,6 +17,7 @@ pub mod plot;
 pub mod recording;
 mod run;
 pub mod scene;
+mod settings;
 pub mod svg;
 pub(crate) mod tables;
 pub mod ticks;
