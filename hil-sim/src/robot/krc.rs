@@ -1,7 +1,6 @@
 //! The robot controller's logic: which state the link is in, which answers may
 //! act, and what the motors get. No clock, no datagrams, no plant.
 
-mod entry;
 mod orders;
 
 use controller_core::joint::{JointMatrix, JointVector};
@@ -338,6 +337,50 @@ impl Krc {
             }),
             target: self.from,
             rate: (self.commanded - self.from) / self.cycle_s,
+        }
+    }
+
+    /// In monitor state: whether command state begins with the next measurement.
+    fn consider(&mut self, now: &Now<'_>) {
+        if self.commands || self.left {
+            return;
+        }
+        let Some(order) = self.order else { return };
+        let wish = self.options.krl == Krl::Auto || order.wants_command;
+        let link = matches!(now.rating.quality(), Quality::Ok | Quality::Perfect);
+        if !link || self.age > 0 || !wish {
+            // One missing answer does not begin the wait anew; a bad link does.
+            if !link || !wish {
+                self.good = 0;
+            }
+            return;
+        }
+        self.good += 1;
+        if self.good <= cycles(self.options.good_for_s, self.cycle_s) {
+            return;
+        }
+        self.good = 0;
+        match order.entry(&self.options, &self.hold, now.drives_on) {
+            Err(message) => self.tell_once(&message),
+            Ok(scheme) => {
+                self.scheme = scheme;
+                self.commands = true;
+                self.flags = order.flags;
+                self.rate = JointVector::zeros();
+                self.commanded = self.hold;
+                self.passage.begin(self.last, JointVector::zeros());
+                self.entries += 1;
+                self.told.clear();
+                self.say(format!("command state, cmdFlags {:#06x}", order.flags));
+            }
+        }
+    }
+
+    /// Why command state does not begin, once per reason in a row.
+    fn tell_once(&mut self, reason: &str) {
+        if reason != self.told {
+            self.told = reason.to_string();
+            self.say(format!("no command state: {reason}"));
         }
     }
 
