@@ -8,7 +8,7 @@ use super::friction::Friction;
 use super::impedance::Impedance;
 use super::model::PlantModel;
 use super::options::PlantOptions;
-use super::stiction::{Stiction, viscous};
+use super::stiction::{DryFriction, Stiction};
 
 /// What lies between motor torque and links.
 #[derive(Clone, Debug)]
@@ -19,17 +19,6 @@ pub(super) struct Drive {
     /// The arm without gravity: at rest, its acceleration is that due to the
     /// torque alone.
     weightless: PlantModel,
-}
-
-/// Friction that does not grow with the speed, and with it the viscous one.
-#[derive(Clone, Debug)]
-pub(super) enum DryFriction {
-    /// The joints turn freely.
-    None,
-    /// It passes smoothly through zero speed.
-    Smooth,
-    /// It holds.
-    Sticking(Stiction),
 }
 
 impl Drive {
@@ -71,12 +60,7 @@ impl Drive {
     ) -> JointState<f64> {
         let motor = self.elastic.as_ref().map_or(*state, |e| e.motor);
         let before = motor.dq;
-        let friction = match self.friction {
-            DryFriction::None => Friction::NONE,
-            DryFriction::Smooth => Friction::at(&before),
-            DryFriction::Sticking(_) => viscous(&before),
-        };
-        let friction = impedance.resist(friction, &motor, h);
+        let friction = impedance.resist(self.friction.explicit(&before), &motor, h);
         let motors = match &self.elastic {
             None => rigid(h, torque, &friction),
             Some(elastic) => elastic.eliminate(state, h, torque, &friction),

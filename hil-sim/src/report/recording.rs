@@ -247,7 +247,7 @@ impl Recording {
         self.column("hand_force", 0)
     }
 
-    /// Norm of a level's task error \[mm\].
+    /// Norm of a level's task error \[mm\], of an orientation \[mrad\].
     #[must_use]
     pub fn error_milli(&self, level: usize) -> &[f64] {
         self.level(level, "e{level}", 0)
