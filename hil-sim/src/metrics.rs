@@ -7,24 +7,6 @@ use serde::Serialize;
 
 use record::run::Sample;
 
-/// Root mean square of what was added.
-#[derive(Clone, Copy, Debug, Default)]
-struct Rms {
-    squares: f64,
-    count: usize,
-}
-
-impl Rms {
-    fn add(&mut self, value: f64) {
-        self.squares += value * value;
-        self.count += 1;
-    }
-
-    fn value(&self) -> Option<f64> {
-        (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
-    }
-}
-
 /// Mean of what was added.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
@@ -40,6 +22,11 @@ impl Mean {
 
     fn value(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+
+    /// Of squares: root mean square.
+    fn root(&self) -> Option<f64> {
+        self.value().map(f64::sqrt)
     }
 }
 
@@ -93,11 +80,15 @@ impl LevelFigures {
         self.max_mm.or(self.max_mrad)
     }
 
+    /// Plateaus of the contacts, in the level's unit; none that was not reached.
+    pub fn plateaus(&self) -> impl Iterator<Item = Option<f64>> {
+        self.plateau_mm.iter().chain(&self.plateau_mrad).copied()
+    }
+
     /// The largest plateau that was reached, in the level's unit.
     #[must_use]
     pub fn worst_plateau(&self) -> Option<f64> {
-        let plateaus = self.plateau_mm.iter().chain(&self.plateau_mrad);
-        plateaus.flatten().copied().reduce(f64::max)
+        self.plateaus().flatten().reduce(f64::max)
     }
 }
 
@@ -178,9 +169,11 @@ impl FaultCounts {
 
 #[derive(Clone, Debug, Default)]
 struct LevelSums {
-    all: Rms,
-    inside: Rms,
-    outside: Rms,
+    /// Of squares.
+    all: Mean,
+    /// Of squares, during contacts and otherwise.
+    inside: Mean,
+    outside: Mean,
     max: Option<f64>,
     leak: Option<f64>,
     plateaus: Vec<Mean>,
@@ -191,17 +184,22 @@ struct LevelSums {
 pub struct Metrics {
     contacts: Vec<Interval>,
     levels: Vec<LevelSums>,
-    residual_error: Rms,
-    residual: Rms,
+    /// Of squares.
+    residual_error: Mean,
+    /// Of squares.
+    residual: Mean,
     max_torque: [f64; DOF],
     lowest: [f64; DOF],
     highest: [f64; DOF],
-    limits: LimitCounts,
     position_limit: JointVector<f64>,
     first: JointVector<f64>,
     last: JointVector<f64>,
-    hand_force: f64,
-    cycles: usize,
+    /// Largest force of a hand \[N\].
+    pub(crate) hand_force: f64,
+    /// Cycles in which limits were active.
+    pub(crate) limits: LimitCounts,
+    /// Cycles added.
+    pub(crate) cycles: usize,
 }
 
 impl Metrics {
@@ -215,16 +213,16 @@ impl Metrics {
         Self {
             contacts: contacts.to_vec(),
             levels: vec![sums; levels],
-            residual_error: Rms::default(),
-            residual: Rms::default(),
+            residual_error: Mean::default(),
+            residual: Mean::default(),
             max_torque: [0.0; DOF],
             lowest: [f64::INFINITY; DOF],
             highest: [f64::NEG_INFINITY; DOF],
-            limits: LimitCounts::default(),
             position_limit: *position_limit,
             first: JointVector::zeros(),
             last: JointVector::zeros(),
             hand_force: 0.0,
+            limits: LimitCounts::default(),
             cycles: 0,
         }
     }
@@ -237,26 +235,22 @@ impl Metrics {
         self.last = sample.state.q;
         self.cycles += 1;
         self.hand_force = self.hand_force.max(sample.hand_force_n);
-        let inside = self
-            .contacts
-            .iter()
-            .any(|contact| contact.inside(sample.t_s));
+        let inside = |contact: &Interval| contact.inside(sample.t_s);
+        let inside = self.contacts.iter().any(inside);
+        let larger = |of: Option<f64>, value: f64| Some(of.map_or(value, |most| most.max(value)));
         for (level, shown) in self.levels.iter_mut().zip(&sample.levels) {
             if !shown.leak.is_nan() {
-                level.leak = Some(
-                    level
-                        .leak
-                        .map_or(shown.leak, |largest| largest.max(shown.leak)),
-                );
+                level.leak = larger(level.leak, shown.leak);
             }
             let error = shown.error * 1e3;
-            level.all.add(error);
-            if inside {
-                level.inside.add(error)
+            level.max = larger(level.max, error);
+            level.all.add(error * error);
+            let part = if inside {
+                &mut level.inside
             } else {
-                level.outside.add(error)
-            }
-            level.max = Some(level.max.map_or(error, |max| max.max(error)));
+                &mut level.outside
+            };
+            part.add(error * error);
             for (plateau, contact) in level.plateaus.iter_mut().zip(&self.contacts) {
                 if contact.plateau(sample.t_s) {
                     plateau.add(error);
@@ -267,8 +261,9 @@ impl Metrics {
         for joint in 0..DOF {
             let (q, torque) = (sample.state.q[joint], sample.torque[joint]);
             let residual = sample.residual[joint];
-            self.residual.add(residual);
-            self.residual_error.add(residual + sample.tau_ext[joint]);
+            self.residual.add(residual * residual);
+            self.residual_error
+                .add((residual + sample.tau_ext[joint]).powi(2));
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
             self.lowest[joint] = self.lowest[joint].min(q);
             self.highest[joint] = self.highest[joint].max(q);
@@ -279,35 +274,32 @@ impl Metrics {
         self.limits.rank += usize::from(sample.rank);
     }
 
-    /// Cycles added.
-    #[must_use]
-    pub fn cycles(&self) -> usize {
-        self.cycles
-    }
-
     /// Tracking figures of the levels.
     #[must_use]
     pub fn levels(&self, levels: &[LevelSpec]) -> Vec<LevelFigures> {
         let figures = |(sums, level): (&LevelSums, &LevelSpec)| {
-            let plateaus: Vec<_> = sums.plateaus.iter().map(Mean::value).collect();
             let position = level.task == TaskSpec::Position;
-            let (plateau_mm, plateau_mrad) = if position {
-                (plateaus, Vec::new())
-            } else {
-                (Vec::new(), plateaus)
+            let split = |value: Option<f64>| match position {
+                true => (value, None),
+                false => (None, value),
             };
-            let mm = |value: Option<f64>| value.filter(|_| position);
-            let mrad = |value: Option<f64>| value.filter(|_| !position);
+            let (rms_mm, rms_mrad) = split(sums.all.root());
+            let (max_mm, max_mrad) = split(sums.max);
+            let plateaus = sums.plateaus.iter().map(Mean::value);
+            let (plateau_mm, plateau_mrad) = match position {
+                true => (plateaus.collect(), Vec::new()),
+                false => (Vec::new(), plateaus.collect()),
+            };
             LevelFigures {
                 name: level.label(),
-                rms_mm: mm(sums.all.value()),
-                max_mm: mm(sums.max),
-                rms_inside_mm: mm(sums.inside.value()),
-                rms_outside_mm: mm(sums.outside.value()),
+                rms_mm,
+                max_mm,
+                rms_inside_mm: split(sums.inside.root()).0,
+                rms_outside_mm: split(sums.outside.root()).0,
                 plateau_mm,
                 leak_max: sums.leak,
-                rms_mrad: mrad(sums.all.value()),
-                max_mrad: mrad(sums.max),
+                rms_mrad,
+                max_mrad,
                 plateau_mrad,
             }
         };
@@ -318,8 +310,8 @@ impl Metrics {
     #[must_use]
     pub fn residual(&self) -> ResidualFigures {
         ResidualFigures {
-            rms_error_nm: self.residual_error.value(),
-            rms_nm: self.residual.value(),
+            rms_error_nm: self.residual_error.root(),
+            rms_nm: self.residual.root(),
         }
     }
 
@@ -335,27 +327,11 @@ impl Metrics {
     /// Joint figures.
     #[must_use]
     pub fn joints(&self) -> JointFigures {
-        let range = |joint: usize| {
-            (self.highest[joint] - self.lowest[joint])
-                .max(0.0)
-                .to_degrees()
-        };
-        let offset = |joint: usize| (self.last[joint] - self.first[joint]).abs().to_degrees();
+        let range = |i: usize| (self.highest[i] - self.lowest[i]).max(0.0).to_degrees();
+        let offset = |i: usize| (self.last[i] - self.first[i]).abs().to_degrees();
         JointFigures {
             range_deg: std::array::from_fn(range),
             end_offset_deg: std::array::from_fn(offset),
         }
-    }
-
-    /// Largest force of a hand \[N\].
-    #[must_use]
-    pub fn hand_force(&self) -> f64 {
-        self.hand_force
-    }
-
-    /// Limit counts.
-    #[must_use]
-    pub fn limits(&self) -> LimitCounts {
-        self.limits
     }
 }

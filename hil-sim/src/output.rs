@@ -11,7 +11,7 @@ use cell::invalid::Invalid;
 pub struct Draft {
     target: PathBuf,
     draft: PathBuf,
-    file: Option<BufWriter<File>>,
+    file: BufWriter<File>,
 }
 
 impl Draft {
@@ -25,7 +25,7 @@ impl Draft {
         Ok(Self {
             target: folder.join(name),
             draft,
-            file: Some(BufWriter::with_capacity(1 << 16, file)),
+            file: BufWriter::with_capacity(1 << 16, file),
         })
     }
 
@@ -34,22 +34,18 @@ impl Draft {
     /// # Errors
     /// Whatever could not be written; then the draft is removed.
     pub fn commit(mut self) -> io::Result<()> {
-        if let Some(mut file) = self.file.take() {
-            file.flush()?;
-        }
+        self.file.flush()?;
         fs::rename(&self.draft, &self.target)
     }
 }
 
 impl Write for Draft {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file
-            .as_mut()
-            .map_or(Ok(bytes.len()), |file| file.write(bytes))
+        self.file.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.file.as_mut().map_or(Ok(()), Write::flush)
+        self.file.flush()
     }
 }
 

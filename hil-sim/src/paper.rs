@@ -5,6 +5,7 @@
 //! [`stability`] follows the Lyapunov functions; [`figures`](mod@figures) and
 //! [`page`] show all of it.
 
+pub mod claim;
 pub mod claims;
 pub mod figures;
 pub mod page;
@@ -18,7 +19,7 @@ use std::path::Path;
 use crate::output;
 use cell::invalid::Invalid;
 use cell::terminal::{print, show};
-use claims::{Claim, Verdict};
+use claim::{Claim, Verdict};
 use results::Results;
 
 /// Does everything and writes it to `out`: report.html, verdicts.json, figures,
@@ -55,18 +56,11 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
     }
     output::write(out, "stability.json", &json(&evidence)?)?;
     output::write(out, "verdicts.json", &json(&claims)?)?;
-    output::write(
-        out,
-        "report.html",
-        &page::report(&results, &claims, &drawings, &evidence),
-    )?;
+    let report = page::report(&results, &claims, &drawings, &evidence);
+    output::write(out, "report.html", &report)?;
 
     print(text(&claims, out))?;
-    Ok(u8::from(
-        claims
-            .iter()
-            .any(|claim| claim.verdict == Verdict::OutOfLimit),
-    ))
+    Ok(u8::from(claim::count(&claims, Verdict::OutOfLimit) > 0))
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Invalid> {
@@ -75,29 +69,16 @@ fn json(value: &impl serde::Serialize) -> Result<String, Invalid> {
 
 /// One line per claim, and where the files are.
 fn text(claims: &[Claim], out: &Path) -> String {
-    let mut text = String::new();
     let width = claims.iter().map(|claim| claim.id.len()).max();
     let width = width.unwrap_or(0);
-    for claim in claims {
-        text += &format!(
-            "{:<14} {:<width$}  {}\n",
-            claim.verdict.name(),
-            claim.id,
-            claim.figure()
-        );
-    }
-    let count = |verdict| {
-        claims
-            .iter()
-            .filter(|claim| claim.verdict == verdict)
-            .count()
+    let row = |claim: &Claim| {
+        let (verdict, figure) = (claim.verdict.name(), claim.figure());
+        format!("{verdict:<14} {:<width$}  {figure}\n", claim.id)
     };
-    text + &format!(
-        "\n{} confirmed, {} not confirmed, {} out of limit\n\
-         report.html, verdicts.json, figures and runs are in {}\n",
-        count(Verdict::Confirmed),
-        count(Verdict::NotConfirmed),
-        count(Verdict::OutOfLimit),
+    let rows: String = claims.iter().map(row).collect();
+    format!(
+        "{rows}\n{}\nreport.html, verdicts.json, figures and runs are in {}\n",
+        claim::tally(claims),
         out.display()
     )
 }

@@ -140,20 +140,18 @@ impl Project {
         }
     }
 
-    /// Whether a string of the claim's section, or of the names that the section on
-    /// stability takes over, is the rest of the identifier.
+    /// Whether a string of the claims, or for those on stability one of the names that
+    /// they take over, is the identifier.
     fn claims(&self, id: &str) -> bool {
-        let text = |path| self.files.get(path).map_or("", String::as_str);
-        let mut sections = text(CLAIMS).split("name: \"").skip(1);
-        sections.any(|chunk| {
-            let mut parts: Vec<&str> = chunk.split('"').step_by(2).collect();
-            let section = parts.remove(0);
-            if section == "stability" {
-                parts.extend(text(STABILITY).split('"').skip(1).step_by(2));
-            }
-            let rest = id.strip_prefix(section).and_then(|id| id.strip_prefix('-'));
-            rest.is_some_and(|rest| parts.iter().any(|part| fits(part, rest)))
-        })
+        let (file, id) = match id.strip_prefix("stability-") {
+            Some(name) => (STABILITY, name),
+            None => (CLAIMS, id),
+        };
+        let text = self.files.get(file).map_or("", String::as_str);
+        text.split('"')
+            .skip(1)
+            .step_by(2)
+            .any(|part| fits(part, id))
     }
 }
 
@@ -244,7 +242,7 @@ fn sound() -> Project {
     let entry = |n| format!("\n## {n}. Title\n\n`t.rs::motion`, `run {n}`\n");
     let errata = (1..=ERRATA).map(entry).collect();
     let test = "/// Covers eq (6), eq\n/// (7).\n#[test]\nfn motion() {\n}\n";
-    let claims = "name: \"s\", s.add(\"circle\"); format!(\"{x}-level{n}\")";
+    let claims = "s.add(\"s-circle\"); format!(\"s-{x}-level{n}\")";
     let arm = "pub struct Arm {\n    pub mass: f64,\n}\n";
     let files = [("a.rs", arm), ("t.rs", test), (CLAIMS, claims)];
     let files = files.map(|(path, text)| (path.into(), text.into()));

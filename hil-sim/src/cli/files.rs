@@ -68,8 +68,8 @@ impl Files {
         let out = &self.out;
         let figures = out.join("figures");
         output::prepare(&figures)?;
-        for (name, drawing) in report::figures(&run) {
-            output::write(&figures, &name, &drawing)?;
+        for figure in report::figures(&run) {
+            output::write(&figures, figure.file, &figure.drawing.standalone())?;
         }
         output::write(out, "report.html", &report::run_report(&run))?;
         let trace = self.trace.finish().commit();

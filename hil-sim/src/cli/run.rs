@@ -1,6 +1,5 @@
 //! `hil-sim run` and the comparison that runs without arguments.
 
-use std::fmt::Display;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -285,37 +284,31 @@ pub(super) fn table(runs: &[&Summary]) -> String {
     );
     for run in runs {
         for (number, level) in (1..).zip(&run.levels) {
-            let first = number == 1;
-            let shown = |show: bool, value: &str| {
-                if show {
-                    value.to_string()
-                } else {
-                    String::new()
-                }
+            let [controller, residual, verdict] = match number {
+                1 => [
+                    run.controller,
+                    &figure(run.residual.rms_error_nm),
+                    run.verdict_word(),
+                ],
+                _ => [""; 3],
             };
             text += &format!(
-                "{:<28} {:<26} {:>9} {:>9} {:>11} {:>12}  {}\n",
-                shown(first, run.controller),
+                "{controller:<28} {:<26} {:>9} {:>9} {:>11} {residual:>12}  {verdict}\n",
                 format!("{number} {}, {}", level.name, level.unit().suffix()),
                 figure(level.rms()),
                 figure(level.max()),
                 figure(level.worst_plateau()),
-                shown(first, &figure(run.residual.rms_error_nm)),
-                shown(first, run.verdict_word()),
             );
         }
     }
     text
 }
 
-pub(super) fn figure(value: Option<f64>) -> String {
-    fn shown(value: impl Display) -> String {
-        value.to_string()
-    }
+fn figure(value: Option<f64>) -> String {
     match value {
-        None => shown("-"),
-        Some(value) if value < 0.01 => shown(format_args!("{value:.5}")),
-        Some(value) => shown(format_args!("{value:.3}")),
+        None => "-".to_string(),
+        Some(value) if value < 0.01 => format!("{value:.5}"),
+        Some(value) => format!("{value:.3}"),
     }
 }
 

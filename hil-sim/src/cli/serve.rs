@@ -11,7 +11,7 @@ use crate::link::{Fault, Window};
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
-    Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, Scheme,
+    Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, scheme_named,
 };
 use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
 use cell::arguments::values::{dead_cycles, number, peer, seed};
@@ -204,7 +204,7 @@ impl ServeOptions {
         let mut robot = Robot::new(setup);
         let mut sink = |instant: &Sample| files.push(&scenario, instant);
         let end = service
-            .run(&mut robot, &mut operator, &mut client, &mut sink)
+            .run(&mut robot, &mut operator, &mut *client, &mut sink)
             .map_err(|error| Invalid::line(error).within(&service.client))?;
         match end {
             End::Finished => (),
@@ -308,7 +308,7 @@ impl ServeOptions {
             },
             options: RobotOptions {
                 krl: Krl::from_name(&self.krl)?,
-                scheme: Scheme::from_name(&self.scheme)?,
+                scheme: scheme_named(&self.scheme)?,
                 adds: RobotAdds::from_name(&self.robot_adds)?,
                 drives_off_s,
                 ..self.thresholds.options()?

@@ -117,7 +117,7 @@ impl<'a> TorqueDriver<'a> {
             fault: step.status.fault,
             driving: Driving {
                 torque: step.torque,
-                impedance: Impedance::none(),
+                impedance: Impedance::NONE,
             },
             torque: step.torque,
             residual: step.residual,

@@ -73,7 +73,11 @@ impl LockStep {
     ///
     /// # Errors
     /// Those of the client's transport.
-    pub fn cycle(&mut self, robot: &mut Robot, client: &mut impl Peer) -> io::Result<()> {
+    pub fn cycle(
+        &mut self,
+        robot: &mut Robot,
+        client: &mut (impl Peer + ?Sized),
+    ) -> io::Result<()> {
         let mut measurement = [0; MEASUREMENT_BYTES];
         robot.measurement(&mut measurement);
         let mut answers = Vec::new();
@@ -108,7 +112,11 @@ impl LockStep {
     ///
     /// # Errors
     /// Those of the client's transport.
-    pub fn finish(&mut self, robot: &mut Robot, client: &mut impl Peer) -> io::Result<()> {
+    pub fn finish(
+        &mut self,
+        robot: &mut Robot,
+        client: &mut (impl Peer + ?Sized),
+    ) -> io::Result<()> {
         robot.leave();
         let mut measurement = [0; MEASUREMENT_BYTES];
         for _ in 0..3 {

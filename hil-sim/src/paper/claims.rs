@@ -1,7 +1,8 @@
 //! The claims of section 6 and of the errata, each with a number and a verdict.
 
-use serde::Serialize;
-
+use super::claim::Sense::{AtLeast, Below};
+use super::claim::Whose::{Ours, Paper};
+use super::claim::{Claim, Claims};
 use super::plan::{DRIFT, Family, PERIODS_S, period_id};
 use super::results::{Results, Worst};
 use super::stability::{CYCLES_MS, Evidence};
@@ -9,139 +10,9 @@ use crate::controllers::ControllerKind::{self, VelocityLevel};
 use crate::controllers::TorqueLaw::{
     AccelerationLevel, AccelerationLevelEstimate, AsPrinted, Hierarchical, Literal, NoObserver,
 };
-use crate::report::ticks;
 use crate::summary::Summary;
 use cell::names::NullStiffness;
 use cell::names::PlantKind::{Ideal, Realistic};
-
-/// What became of a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Verdict {
-    /// The number says so.
-    #[serde(rename = "confirmed")]
-    Confirmed,
-    /// A claim of the paper that the number refutes: a result.
-    #[serde(rename = "not confirmed")]
-    NotConfirmed,
-    /// A limit of this project that the number exceeds: a failure.
-    #[serde(rename = "out of limit")]
-    OutOfLimit,
-}
-
-impl Verdict {
-    /// As in verdicts.json.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Confirmed => "confirmed",
-            Self::NotConfirmed => "not confirmed",
-            Self::OutOfLimit => "out of limit",
-        }
-    }
-}
-
-/// A claim with its number.
-#[derive(Clone, Debug, Serialize)]
-pub struct Claim {
-    /// Short name.
-    pub id: String,
-    /// Section of the paper, or "attribution", "velocity-level", "stability",
-    /// "errata".
-    pub section: &'static str,
-    /// The claim as a sentence.
-    pub claim: String,
-    /// The number.
-    pub measured: f64,
-    /// Its unit.
-    pub unit: &'static str,
-    /// What it is held against; see `sense`.
-    pub limit: Option<f64>,
-    /// "below", "at least".
-    pub sense: &'static str,
-    /// Verdict.
-    pub verdict: Verdict,
-    /// The run it is from.
-    pub run: String,
-}
-
-impl Claim {
-    /// "0.459 mm, below 0.55".
-    #[must_use]
-    pub fn figure(&self) -> String {
-        let limit = self
-            .limit
-            .map(|limit| format!(", {} {}", self.sense, shown(limit)));
-        format!(
-            "{} {}{}",
-            ticks::figure(self.measured),
-            self.unit,
-            limit.unwrap_or_default()
-        )
-    }
-}
-
-/// A limit as text: plain, or by powers of ten where it is tiny.
-#[must_use]
-pub fn shown(limit: f64) -> String {
-    if limit < 1e-5 {
-        ticks::figure(limit)
-    } else {
-        ticks::plain(limit)
-    }
-}
-
-/// How a number is held against its limit.
-#[derive(Clone, Copy)]
-enum Sense {
-    Below(f64),
-    AtLeast(f64),
-}
-
-/// Whose claim it is: one of the paper may be refuted, a limit of ours not.
-#[derive(Clone, Copy, PartialEq)]
-enum Whose {
-    Paper,
-    Ours,
-}
-
-/// Collects claims of one section.
-struct Section {
-    name: &'static str,
-    claims: Vec<Claim>,
-}
-
-impl Section {
-    fn add(
-        &mut self,
-        whose: Whose,
-        id: &str,
-        claim: &str,
-        found: Worst,
-        unit: &'static str,
-        sense: Sense,
-    ) {
-        let (holds, limit, word) = match sense {
-            Sense::Below(limit) => (found.value < limit, limit, "below"),
-            Sense::AtLeast(limit) => (found.value >= limit, limit, "at least"),
-        };
-        let verdict = match (holds, whose) {
-            (true, _) => Verdict::Confirmed,
-            (false, Whose::Paper) => Verdict::NotConfirmed,
-            (false, Whose::Ours) => Verdict::OutOfLimit,
-        };
-        self.claims.push(Claim {
-            id: format!("{}-{id}", self.name),
-            section: self.name,
-            claim: claim.to_string(),
-            measured: found.value,
-            unit,
-            limit: Some(limit),
-            sense: word,
-            verdict,
-            run: found.run,
-        });
-    }
-}
 
 fn rms(level: usize) -> impl Fn(&Summary) -> Option<f64> {
     move |summary| summary.levels.get(level)?.rms()
@@ -162,39 +33,31 @@ fn ratio(
     under: Family,
     figure: impl Fn(&Summary) -> Option<f64>,
 ) -> Worst {
-    let least = results.least(over, &figure);
-    let worst = results.worst(under, &figure);
-    Worst {
-        value: least.value / worst.value,
-        run: least.run,
-    }
+    results
+        .least(over, &figure)
+        .over(&results.worst(under, &figure))
 }
 
 /// Every claim.
 #[must_use]
 pub fn all(results: &Results, evidence: &[Evidence]) -> Vec<Claim> {
-    let mut claims = two_levels(results);
-    claims.extend(three_levels(results));
-    claims.extend(discussion(results));
-    claims.extend(attribution(results));
-    claims.extend(velocity_level(results));
-    claims.extend(stability(evidence));
-    claims.extend(errata(results));
-    claims
+    let mut claims = Claims::default();
+    two_levels(&mut claims, results);
+    three_levels(&mut claims, results);
+    discussion(&mut claims, results);
+    attribution(&mut claims, results);
+    velocity_level(&mut claims, results);
+    stability(&mut claims, evidence);
+    errata(&mut claims, results);
+    claims.0
 }
 
-fn two_levels(results: &Results) -> Vec<Claim> {
-    use Sense::{AtLeast, Below};
-    use Whose::{Ours, Paper};
-    let mut s = Section {
-        name: "6.1",
-        claims: Vec::new(),
-    };
+fn two_levels(s: &mut Claims, results: &Results) {
     let pushed = Family::pushed("two-level", Realistic, Hierarchical);
     let ideal = Family::pushed("two-level", Ideal, Hierarchical);
     s.add(
         Ours,
-        "circle",
+        "6.1-circle",
         "The flange keeps its circle while the body is pushed: rms error.",
         results.worst(pushed, rms(0)),
         "mm",
@@ -202,7 +65,7 @@ fn two_levels(results: &Results) -> Vec<Claim> {
     );
     s.add(
         Ours,
-        "circle-max",
+        "6.1-circle-max",
         "The flange keeps its circle while the body is pushed: largest error.",
         results.worst(pushed, max(0)),
         "mm",
@@ -210,7 +73,7 @@ fn two_levels(results: &Results) -> Vec<Claim> {
     );
     s.add(
         Ours,
-        "exact",
+        "6.1-exact",
         "With an exact model and nobody near, the law tracks exactly but for sampling: rms error.",
         results.worst(ideal.free(), rms(0)),
         "mm",
@@ -218,21 +81,21 @@ fn two_levels(results: &Results) -> Vec<Claim> {
     );
     s.add(
         Ours,
-        "plateau",
+        "6.1-plateau",
         "A steady push leaves no task error: worst plateau with an exact model.",
         results.worst(ideal, |summary| summary.levels[0].worst_plateau()),
         "mm",
         Below(0.05),
     );
-    s.add(Paper, "estimate", "The observer finds the external torque without torque sensors: rms error of the estimate, exact model.",
+    s.add(Paper, "6.1-estimate", "The observer finds the external torque without torque sensors: rms error of the estimate, exact model.",
         results.worst(ideal, residual), "Nm", Below(0.1));
-    s.add(Paper, "estimate-friction", "The estimate is as good on an arm with friction and a wrong model (friction is in r: it is no contact measure by itself).",
+    s.add(Paper, "6.1-estimate-friction", "The estimate is as good on an arm with friction and a wrong model (friction is in r: it is no contact measure by itself).",
         results.worst(pushed, residual), "Nm", Below(0.1));
-    s.add(Paper, "compliance", "The body gives way in the null space: more travel of joint 3 with the pushes than without, exact model.",
+    s.add(Paper, "6.1-compliance", "The body gives way in the null space: more travel of joint 3 with the pushes than without, exact model.",
         difference(results, ideal, |summary| Some(summary.joints.range_deg[2])), "deg", AtLeast(5.0));
     s.add(
         Ours,
-        "no-observer",
+        "6.1-no-observer",
         "Without the observer the task is lost: how many times larger the rms error is.",
         ratio(
             results,
@@ -243,9 +106,8 @@ fn two_levels(results: &Results) -> Vec<Claim> {
         "times",
         AtLeast(8.0),
     );
-    s.add(Ours, "acceleration-level", "Acceleration-level priorities lose the task when pushed: how many times larger the rms error is.",
+    s.add(Ours, "6.1-acceleration-level", "Acceleration-level priorities lose the task when pushed: how many times larger the rms error is.",
         ratio(results, Family::pushed("two-level", Realistic, AccelerationLevel), pushed, rms(0)), "times", AtLeast(8.0));
-    s.claims
 }
 
 fn difference(
@@ -261,13 +123,7 @@ fn difference(
     }
 }
 
-fn three_levels(results: &Results) -> Vec<Claim> {
-    use Sense::{AtLeast, Below};
-    use Whose::Ours;
-    let mut s = Section {
-        name: "6.2",
-        claims: Vec::new(),
-    };
+fn three_levels(s: &mut Claims, results: &Results) {
     for (scenario, limits) in [("case-1", [0.85, 0.2]), ("case-2", [0.55, 0.2])] {
         let pushed = Family::pushed(scenario, Realistic, Hierarchical);
         let other = Family::pushed(scenario, Realistic, AccelerationLevel);
@@ -275,7 +131,7 @@ fn three_levels(results: &Results) -> Vec<Claim> {
             let number = level + 1;
             s.add(
                 Ours,
-                &format!("{scenario}-level{number}"),
+                &format!("6.2-{scenario}-level{number}"),
                 &format!(
                     "{scenario}: level {number} keeps its task while the body is pushed: rms error."
                 ),
@@ -283,35 +139,28 @@ fn three_levels(results: &Results) -> Vec<Claim> {
                 "mm",
                 Below(limit),
             );
-            s.add(Ours, &format!("{scenario}-level{number}-acceleration"),
+            s.add(Ours, &format!("6.2-{scenario}-level{number}-acceleration"),
                 &format!("{scenario}: acceleration-level priorities lose level {number}: how many times larger the rms error is."),
                 ratio(results, other, pushed, rms(level)), "times", AtLeast(10.0));
         }
         let ideal = Family::pushed(scenario, Ideal, Hierarchical);
-        s.add(Ours, &format!("{scenario}-priority"),
+        s.add(Ours, &format!("6.2-{scenario}-priority"),
             &format!("{scenario}: lower levels do not disturb the first: its largest acceleration caused from below, exact model."),
             results.worst(ideal, |summary| summary.levels[0].leak_max), "m/s2", Below(1e-9));
     }
-    s.add(Ours, "case-1-exact", "case-1: the second level tracks exactly below a moving first one: rms error, exact model, nobody near.",
+    s.add(Ours, "6.2-case-1-exact", "case-1: the second level tracks exactly below a moving first one: rms error, exact model, nobody near.",
         results.worst(Family::pushed("case-1", Ideal, Hierarchical).free(), rms(1)), "mm", Below(0.0005));
-    s.claims
 }
 
-fn discussion(results: &Results) -> Vec<Claim> {
-    use Sense::Below;
-    use Whose::{Ours, Paper};
-    let mut s = Section {
-        name: "6.3",
-        claims: Vec::new(),
-    };
+fn discussion(s: &mut Claims, results: &Results) {
     let of =
         |scenario, plant| results.worst(Family::pushed(scenario, plant, Hierarchical), residual);
     for (plant, name) in [(Ideal, "exact model"), (Realistic, "realistic arm")] {
         let two = of("two-level", plant);
         let three = of("case-1", plant);
-        s.add(Paper, &format!("residual-{}", if plant == Ideal { "ideal" } else { "realistic" }),
+        s.add(Paper, &format!("6.3-residual-{}", if plant == Ideal { "ideal" } else { "realistic" }),
             &format!("Two levels have the smaller residual: rms error of the estimate, two levels over three (case-1), {name}."),
-            Worst { value: two.value / three.value, run: two.run }, "times", Below(1.0));
+            two.over(&three), "times", Below(1.0));
     }
     let hand = Family::pushed("hand", Realistic, Hierarchical);
     let force = |summary: &Summary| summary.hand_force_max_n;
@@ -320,12 +169,12 @@ fn discussion(results: &Results) -> Vec<Claim> {
         hand.stiff(NullStiffness::High),
     );
     let soft = results.worst(low, force);
-    s.add(Ours, "hand-force", "A softer null space gives way to the hand more easily: largest hand force, low over high stiffness.",
-        Worst { value: soft.value / results.least(high, force).value, run: soft.run }, "times", Below(0.75));
+    s.add(Ours, "6.3-hand-force", "A softer null space gives way to the hand more easily: largest hand force, low over high stiffness.",
+        soft.over(&results.least(high, force)), "times", Below(0.75));
     let (soft, stiff) = (results.worst(low, rms(0)), results.worst(high, rms(0)));
     s.add(
         Ours,
-        "hand-tracking",
+        "6.3-hand-tracking",
         "The stiffness does not matter to the task: relative difference of the rms errors.",
         Worst {
             value: (soft.value / stiff.value - 1.0).abs(),
@@ -334,25 +183,18 @@ fn discussion(results: &Results) -> Vec<Claim> {
         "of 1",
         Below(0.2),
     );
-    s.claims
 }
 
-fn attribution(results: &Results) -> Vec<Claim> {
-    use Sense::{AtLeast, Below};
-    use Whose::Paper;
-    let mut s = Section {
-        name: "attribution",
-        claims: Vec::new(),
-    };
+fn attribution(s: &mut Claims, results: &Results) {
     for scenario in ["two-level", "case-1", "case-2"] {
         let estimate = results.worst(
             Family::pushed(scenario, Realistic, AccelerationLevelEstimate),
             rms(0),
         );
         let product = results.worst(Family::pushed(scenario, Realistic, Hierarchical), rms(0));
-        s.add(Paper, &format!("{scenario}-tracking"),
+        s.add(Paper, &format!("attribution-{scenario}-tracking"),
             &format!("{scenario}: with the same estimate of the external torque the hierarchical law tracks better than acceleration-level priorities: level-1 rms of the latter over that of the former."),
-            Worst { value: estimate.value / product.value, run: estimate.run }, "times", AtLeast(1.0));
+            estimate.over(&product), "times", AtLeast(1.0));
     }
     let travel = |summary: &Summary| Some(summary.joints.range_deg[2]);
     let product = results.worst(Family::pushed("case-2", Realistic, Hierarchical), travel);
@@ -362,28 +204,21 @@ fn attribution(results: &Results) -> Vec<Claim> {
     );
     s.add(
         Paper,
-        "posture",
+        "attribution-posture",
         "What the hierarchical law has over it is a null space with stiffness: travel of joint 3 while the flange holds its place and the body is pushed (case-2), acceleration-level law with estimate over the hierarchical one.",
-        Worst { value: estimate.value / product.value, run: estimate.run },
+        estimate.over(&product),
         "times",
         AtLeast(2.0),
     );
-    s.add(Paper, "observer", "The observer brings the tracking: rms error with it, over that without, same hierarchy, two-level.",
+    s.add(Paper, "attribution-observer", "The observer brings the tracking: rms error with it, over that without, same hierarchy, two-level.",
         Worst {
             value: 1.0 / ratio(results, Family::pushed("two-level", Realistic, NoObserver),
                 Family::pushed("two-level", Realistic, Hierarchical), rms(0)).value,
             run: Family::pushed("two-level", Realistic, Hierarchical).id(1),
         }, "times", Below(0.125));
-    s.claims
 }
 
-fn velocity_level(results: &Results) -> Vec<Claim> {
-    use Sense::{AtLeast, Below};
-    use Whose::Ours;
-    let mut s = Section {
-        name: "velocity-level",
-        claims: Vec::new(),
-    };
+fn velocity_level(s: &mut Claims, results: &Results) {
     for (scenario, limits) in [
         ("two-level", &[0.55][..]),
         ("case-1", &[0.85, 0.2]),
@@ -394,7 +229,7 @@ fn velocity_level(results: &Results) -> Vec<Claim> {
             let number = level + 1;
             s.add(
                 Ours,
-                &format!("{scenario}-level{number}"),
+                &format!("velocity-{scenario}-level{number}"),
                 &format!(
                     "{scenario}: velocity-level priorities above the robot's own position \
                      controller keep level {number} while the body is pushed: rms error."
@@ -416,7 +251,7 @@ fn velocity_level(results: &Results) -> Vec<Claim> {
     let (stiff, soft) = (yields(VelocityLevel), yields(Hierarchical.into()));
     s.add(
         Ours,
-        "compliance",
+        "velocity-compliance",
         "With them the body does not give way: more travel of joint 3 with the pushes than \
          without, hierarchical torque law over velocity level, exact model.",
         Worst {
@@ -426,21 +261,16 @@ fn velocity_level(results: &Results) -> Vec<Claim> {
         "times",
         AtLeast(10.0),
     );
-    s.claims
 }
 
-fn stability(evidence: &[Evidence]) -> Vec<Claim> {
-    let mut s = Section {
-        name: "stability",
-        claims: Vec::new(),
-    };
+fn stability(s: &mut Claims, evidence: &[Evidence]) {
     let shortest = CYCLES_MS[CYCLES_MS.len() - 1];
     for one in evidence.iter().filter(|one| one.cycle_ms == CYCLES_MS[0]) {
         let run = format!("{} at {} ms", one.name, one.cycle_ms);
-        let id = one.name.to_lowercase().replace(' ', "-");
+        let id = format!("stability-{}", one.name.to_lowercase().replace(' ', "-"));
         if one.rises == 0 {
             s.add(
-                Whose::Ours,
+                Ours,
                 &id,
                 &format!(
                     "{} never rises beyond rounding: cycles in which it does.",
@@ -448,7 +278,7 @@ fn stability(evidence: &[Evidence]) -> Vec<Claim> {
                 ),
                 Worst { value: 0.0, run },
                 "cycles",
-                Sense::Below(1.0),
+                Below(1.0),
             );
             continue;
         }
@@ -456,23 +286,16 @@ fn stability(evidence: &[Evidence]) -> Vec<Claim> {
             .iter()
             .find(|e| e.name == one.name && e.cycle_ms == shortest);
         let shrunk = finest.map_or(f64::NAN, |e| e.largest_rise / one.largest_rise);
-        s.add(Whose::Ours, &id,
+        s.add(Ours, &id,
             &format!("{} rises by a sampling term only ({} cycle(s), at most {:.1e} of its start): how the largest rise shrinks from {} to {shortest} ms.",
                 one.name, one.rises, one.largest_rise, one.cycle_ms),
-            Worst { value: shrunk, run }, "times", Sense::Below(0.0625));
+            Worst { value: shrunk, run }, "times", Below(0.0625));
     }
-    s.claims
 }
 
-fn errata(results: &Results) -> Vec<Claim> {
-    use Sense::{AtLeast, Below};
-    use Whose::{Ours, Paper};
-    let mut s = Section {
-        name: "errata",
-        claims: Vec::new(),
-    };
+fn errata(s: &mut Claims, results: &Results) {
     let printed = results.first(Family::pushed("two-level", Ideal, AsPrinted));
-    s.add(Paper, "33-sign", "(33) as printed, with - Z K_l,p q~, keeps the null space stable: how long the run goes on.",
+    s.add(Paper, "errata-33-sign", "(33) as printed, with - Z K_l,p q~, keeps the null space stable: how long the run goes on.",
         Worst { value: printed.summary.cycles as f64 * printed.summary.cycle_ms / 1e3, run: printed.id.clone() },
         "s", AtLeast(20.0));
     for period in PERIODS_S {
@@ -492,13 +315,12 @@ fn errata(results: &Results) -> Vec<Claim> {
             } else {
                 "exact"
             };
-            s.add(whose, &format!("34-coupling-{period}s-{short}"),
+            s.add(whose, &format!("errata-34-coupling-{period}s-{short}"),
                 &format!("(34) {name} tracks level 2 below a circle of {period} s a turn: rms error, exact model."),
                 Worst { value, run: outcome.id.clone() }, "mm", Below(limit));
         }
     }
     let drift = results.get(DRIFT);
-    s.add(Paper, "51-drift", "The posture integral (51) stays near the start posture on the circle: travel of joint 5 before the run ends.",
+    s.add(Paper, "errata-51-drift", "The posture integral (51) stays near the start posture on the circle: travel of joint 5 before the run ends.",
         Worst { value: drift.summary.joints.range_deg[4], run: drift.id.clone() }, "deg", Below(90.0));
-    s.claims
 }

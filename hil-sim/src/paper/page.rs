@@ -1,12 +1,13 @@
 //! The report of all experiments: one HTML file that needs nothing else.
 
-use super::claims::{self, Claim, Verdict};
-use super::figures::Figure;
-use super::results::Results;
+use super::claim::{self, Claim, Verdict};
+use super::results::{Outcome, Results};
 use super::stability::Evidence;
+use crate::metrics::LevelFigures;
+use crate::report::figures::Figure;
 use crate::report::html;
 use crate::report::svg::escape;
-use crate::report::tables::{Table, columns, number};
+use crate::report::tables::{Table, number as cell, units};
 use crate::report::ticks;
 
 const SECTIONS: [(&str, &str); 7] = [
@@ -18,7 +19,7 @@ const SECTIONS: [(&str, &str); 7] = [
         "What the observer brings, and what the hierarchy",
     ),
     (
-        "velocity-level",
+        "velocity",
         "The same priorities on velocity level, above the robot's position controller",
     ),
     ("stability", "Stability as the paper argues it"),
@@ -46,11 +47,9 @@ pub fn report(
         }
         html::section(&mut body, heading, &content);
     }
-    let drawings: Vec<_> = (1..)
-        .zip(figures)
-        .map(|(n, figure)| html::figure(n, &figure.drawing.inline(), &figure.caption))
-        .collect();
-    html::section(&mut body, "Figures", &drawings.concat());
+    let numbered = (1..).zip(figures);
+    let drawings = numbered.map(|(n, figure)| html::figure(n, &figure.drawing, &figure.caption));
+    html::section(&mut body, "Figures", &drawings.collect::<String>());
     html::section(&mut body, "Runs", &runs(results));
     body += "<footer>\n<p>Repeat with</p>\n<pre>hil-sim paper --out DIR</pre>\n</footer>\n";
     html::page(
@@ -71,56 +70,29 @@ fn header() -> String {
 }
 
 fn banner(claims: &[Claim]) -> String {
-    let count = |verdict| {
-        claims
-            .iter()
-            .filter(|claim| claim.verdict == verdict)
-            .count()
+    let (class, word) = match claim::count(claims, Verdict::OutOfLimit) {
+        0 => ("pass", "ALL LIMITS KEPT"),
+        _ => ("fail", "OUT OF LIMIT"),
     };
-    let out = count(Verdict::OutOfLimit);
-    let (class, word, icon) = if out == 0 {
-        (
-            "pass",
-            "ALL LIMITS KEPT",
-            r#"<circle cx="20" cy="20" r="17"/><path d="M12 21l6 6 11-13"/>"#,
-        )
-    } else {
-        (
-            "fail",
-            "OUT OF LIMIT",
-            r#"<circle cx="20" cy="20" r="17"/><path d="M13.5 13.5l13 13m0-13l-13 13"/>"#,
-        )
-    };
-    format!(
-        "<section class=\"verdict {class}\" aria-label=\"Verdict\">\n<svg class=\"icon\" \
-         viewBox=\"0 0 40 40\" aria-hidden=\"true\">{icon}</svg>\n<div><p class=\"word\">{word}</p>\n\
-         <p>{} confirmed, {} not confirmed, {out} out of limit.</p></div>\n</section>\n",
-        count(Verdict::Confirmed),
-        count(Verdict::NotConfirmed)
-    )
+    html::verdict(class, word, &[&format!("{}.", claim::tally(claims))])
 }
 
 fn claims_table<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
-    let names = columns(&["Claim", "#Measured", "#Limit", "Verdict", "Run"]);
-    let mut table = Table::new("Claims and what was measured.", &names);
+    let columns = ["Claim", "#Measured", "#Limit", "Verdict", "Run"];
+    let mut table = Table::new("Claims and what was measured.", columns);
     for claim in claims {
         let (class, mark) = match claim.verdict {
             Verdict::Confirmed => ("pass", "\u{2713}"),
             Verdict::NotConfirmed => ("stopped", "\u{2260}"),
             Verdict::OutOfLimit => ("fail", "\u{2717}"),
         };
-        let limit = claim
-            .limit
-            .map(|limit| format!("#{}\u{a0}{}", claim.sense, claims::shown(limit)));
+        let verdict = claim.verdict.name();
         table.row(
             &escape(&claim.claim),
-            &[
+            [
                 format!("#{}\u{a0}{}", ticks::figure(claim.measured), claim.unit),
-                limit.unwrap_or_default(),
-                format!(
-                    "<span class=\"{class}\">{mark}\u{a0}{}</span>",
-                    claim.verdict.name()
-                ),
+                format!("#{}\u{a0}{}", claim.sense, claim::shown(claim.limit)),
+                format!("<span class=\"{class}\">{mark}\u{a0}{verdict}</span>"),
                 format!("<code>{}</code>", escape(&claim.run)),
             ],
         );
@@ -130,72 +102,60 @@ fn claims_table<'a>(claims: impl Iterator<Item = &'a Claim>) -> String {
 
 /// Rises of the Lyapunov functions at every cycle time.
 fn rises(evidence: &[Evidence]) -> String {
-    let names = columns(&[
+    let columns = [
         "Function",
         "#Cycle [ms]",
         "#Cycles that rise",
         "#Largest rise / V(0)",
-    ]);
-    let mut table = Table::new("Lyapunov functions along sampled runs, 2 s each.", &names);
+    ];
+    let mut table = Table::new("Lyapunov functions along sampled runs, 2 s each.", columns);
     for one in evidence {
-        table.row(
-            &escape(&one.name),
-            &[
-                format!("#{}", ticks::plain(one.cycle_ms)),
-                format!("#{}", one.rises),
-                if one.rises == 0 {
-                    "#0".to_string()
-                } else {
-                    format!("#{:.1e}", one.largest_rise)
-                },
-            ],
-        );
+        let largest = match one.rises {
+            0 => "#0".to_string(),
+            _ => format!("#{:.1e}", one.largest_rise),
+        };
+        let (cycle, rises) = (ticks::plain(one.cycle_ms), one.rises);
+        let cells = [format!("#{cycle}"), format!("#{rises}"), largest];
+        table.row(&escape(&one.name), cells);
     }
     table.finish()
 }
 
 /// Every run with its figures, as in its summary.json.
 fn runs(results: &Results) -> String {
-    let names = columns(&[
+    let columns = [
         "Run",
         "#rms",
         "#Largest",
         "#Worst plateau",
         "#r error [Nm]",
         "Verdict",
-    ]);
-    let mut table = Table::new(
-        "Per level, in mm; the first row of a run is level 1. The files are in \
+    ];
+    let levels = results
+        .outcomes()
+        .flat_map(|outcome| &outcome.summary.levels);
+    let caption = format!(
+        "Per level, in {}; the first row of a run is level 1. The files are in \
          runs/NAME/summary.json.",
-        &names,
+        units(levels.map(LevelFigures::unit))
     );
-    for outcome in results.outcomes() {
-        for (level, figures) in outcome.summary.levels.iter().enumerate() {
-            let first = level == 0;
-            let name = if first {
-                format!("<code>{}</code>", outcome.id)
-            } else {
-                format!("&emsp;level {}", level + 1)
-            };
-            let residual = outcome.summary.residual.rms_error_nm.filter(|_| first);
-            table.row(
-                &name,
-                &[
-                    number(figures.rms()),
-                    number(figures.max()),
-                    number(figures.worst_plateau()),
-                    if first {
-                        number(residual)
-                    } else {
-                        String::new()
-                    },
-                    if first {
-                        outcome.summary.verdict_word().to_string()
-                    } else {
-                        String::new()
-                    },
+    let mut table = Table::new(&caption, columns);
+    for Outcome { id, summary, .. } in results.outcomes() {
+        for (number, level) in (1..).zip(&summary.levels) {
+            let [name, residual, verdict] = match number {
+                1 => [
+                    format!("<code>{id}</code>"),
+                    cell(summary.residual.rms_error_nm),
+                    summary.verdict_word().to_string(),
                 ],
-            );
+                _ => [
+                    format!("&emsp;level {number}"),
+                    String::new(),
+                    String::new(),
+                ],
+            };
+            let figures = [level.rms(), level.max(), level.worst_plateau()].map(cell);
+            table.row(&name, figures.into_iter().chain([residual, verdict]));
         }
     }
     table.finish()

@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use super::plan::{Family, Planned};
-use crate::report::Recording;
+use crate::report::{Recording, Run};
 use crate::summary::Summary;
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
+use record::run::Sample;
 
 /// A finished run.
 #[derive(Clone, Debug)]
@@ -21,8 +22,16 @@ pub struct Outcome {
     pub scenario: Scenario,
     /// What it reached.
     pub summary: Summary,
-    /// Its time series, of the first seed only.
-    pub recording: Option<Recording>,
+    /// Its time series; empty but of the first seed.
+    pub recording: Recording,
+}
+
+impl Outcome {
+    /// The run as figures need it.
+    #[must_use]
+    pub fn run(&self) -> Run<'_> {
+        Run::new(&self.summary, &self.scenario, &self.recording)
+    }
 }
 
 /// All finished runs by name.
@@ -36,6 +45,17 @@ pub struct Worst {
     pub value: f64,
     /// Name of the run.
     pub run: String,
+}
+
+impl Worst {
+    /// How many times that of another family it is.
+    #[must_use]
+    pub fn over(self, other: &Self) -> Self {
+        Self {
+            value: self.value / other.value,
+            ..self
+        }
+    }
 }
 
 impl Results {
@@ -133,23 +153,16 @@ fn execute(run: &Planned) -> Result<Outcome, Invalid> {
     let experiment = &run.experiment;
     let controller = experiment.controller()?;
     let scenario = &experiment.scenario;
-    let mut recording =
-        (experiment.seed == 1).then(|| Recording::new(scenario, experiment.contacts));
-    let summary = experiment
-        .run(
-            &controller,
-            |instant| {
-                if let Some(recording) = &mut recording {
-                    recording.push(scenario, instant);
-                }
-                Ok(())
-            },
-            |_| (),
-        )
-        .map_err(Invalid::line)?;
-    if let Some(recording) = &mut recording {
-        recording.finish();
-    }
+    let mut recording = Recording::new(scenario, experiment.contacts);
+    let record = |sample: &Sample| {
+        if experiment.seed == 1 {
+            recording.push(scenario, sample);
+        }
+        Ok(())
+    };
+    let summary = experiment.run(&controller, record, |_| ());
+    let summary = summary.map_err(Invalid::line)?;
+    recording.finish();
     Ok(Outcome {
         id: run.id.clone(),
         scenario: scenario.clone(),

@@ -3,7 +3,7 @@
 
 use controller_core::joint::{DOF, JointVector, Matrix3, Vector3};
 
-use super::model::{Link, PlantModel, Twist};
+use super::model::{Body, PlantModel, Twist};
 
 /// An inertia that need not be a rigid body's: the force on the handle of a
 /// chain per acceleration of the handle, by 3 x 3 blocks.
@@ -56,7 +56,7 @@ fn rotate_symmetric(r: &Matrix3<f64>, s: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 impl ArticulatedInertia {
-    fn rigid(link: &Link) -> Self {
+    fn rigid(link: &Body) -> Self {
         Self {
             rotational: link.inertia,
             coupling: skew(&link.first_moment),
@@ -86,7 +86,7 @@ impl ArticulatedInertia {
     /// The same inertia seen from the previous link's frame. The shift comes
     /// first, in link axes, where the vector back is constant.
     #[inline]
-    fn carried(&self, link: &Link, rotation: &Matrix3<f64>) -> Self {
+    fn carried(&self, link: &Body, rotation: &Matrix3<f64>) -> Self {
         let reach = skew(&link.reach);
         let coupling = self.coupling + reach * self.translational;
         // Both products are needed: only their sum is symmetric.
@@ -108,7 +108,7 @@ impl ArticulatedInertia {
 
 impl Wrench {
     #[inline]
-    fn carried(&self, link: &Link, rotation: &Matrix3<f64>) -> Self {
+    fn carried(&self, link: &Body, rotation: &Matrix3<f64>) -> Self {
         Self {
             moment: rotation * (self.moment + link.reach.cross(&self.force)),
             force: rotation * self.force,

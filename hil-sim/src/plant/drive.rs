@@ -1,4 +1,5 @@
-//! Integration of an arm whose joints stick, or are elastic, or both.
+//! One step of an arm whose joints have friction, stick, are elastic, or are held by
+//! springs of the robot's own.
 
 use controller_core::joint::{DOF, JointMatrix, JointState, JointVector};
 
@@ -7,12 +8,13 @@ use super::friction::Friction;
 use super::impedance::Impedance;
 use super::model::PlantModel;
 use super::options::PlantOptions;
-use super::stiction::{Stiction, viscous};
+use super::stiction::{DryFriction, Stiction};
 
 /// What lies between motor torque and links.
 #[derive(Clone, Debug)]
 pub(super) struct Drive {
-    pub stiction: Option<Stiction>,
+    pub friction: DryFriction,
+    /// Unless the joints are rigid.
     pub elastic: Option<Elastic>,
     /// The arm without gravity: at rest, its acceleration is that due to the
     /// torque alone.
@@ -20,64 +22,45 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// Drive of `model` at rest at `q0` \[rad\], if `options` ask for one. The
+    /// Rigid joints without friction.
+    pub fn ideal(model: &PlantModel) -> Self {
+        Self {
+            friction: DryFriction::None,
+            elastic: None,
+            weightless: model.weightless(),
+        }
+    }
+
+    /// Drive of `model` at rest at `q0` \[rad\], with what `options` ask for. The
     /// springs of elastic joints carry the arm's weight.
-    pub fn new(model: &PlantModel, q0: &JointVector<f64>, options: &PlantOptions) -> Option<Self> {
-        (options.stiction || options.elasticity).then(|| Self {
-            stiction: options.stiction.then(Stiction::new),
+    pub fn realistic(model: &PlantModel, q0: &JointVector<f64>, options: &PlantOptions) -> Self {
+        Self {
+            friction: if options.stiction {
+                DryFriction::Sticking(Stiction::new())
+            } else {
+                DryFriction::Smooth
+            },
             elastic: options
                 .elasticity
                 .then(|| Elastic::new(q0, &model.gravity_torque(q0))),
-            weightless: model.weightless(),
-        })
-    }
-
-    /// One cycle by `substeps` linearly implicit steps, as
-    /// [`super::integrate::realistic`] for a rigid arm with smooth friction.
-    #[expect(clippy::too_many_arguments, reason = "those of a cycle")]
-    pub fn cycle(
-        &mut self,
-        model: &PlantModel,
-        start: &JointState<f64>,
-        t_s: f64,
-        cycle_s: f64,
-        substeps: u32,
-        torque: &JointVector<f64>,
-        impedance: Option<&Impedance>,
-        contact: &mut impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
-    ) -> JointState<f64> {
-        let h = cycle_s / f64::from(substeps);
-        let mut state = *start;
-        for step in 0..substeps {
-            let elapsed = h * f64::from(step);
-            let pushed = contact(t_s + elapsed, &state);
-            let springs = impedance.map(|impedance| impedance.after(elapsed));
-            state = self.step(model, &state, h, torque, springs.as_ref(), &pushed);
+            ..Self::ideal(model)
         }
-        state
     }
 
     /// One step of `h` \[s\] with the torques `torque` of the motors and `pushed`
     /// of contacts \[Nm\]. The springs of `impedance` act on the motors.
-    fn step(
+    pub fn step(
         &mut self,
         model: &PlantModel,
         state: &JointState<f64>,
         h: f64,
         torque: &JointVector<f64>,
-        impedance: Option<&Impedance>,
+        impedance: &Impedance,
         pushed: &JointVector<f64>,
     ) -> JointState<f64> {
         let motor = self.elastic.as_ref().map_or(*state, |e| e.motor);
         let before = motor.dq;
-        let friction = match self.stiction {
-            None => Friction::at(&before),
-            Some(_) => viscous(&before),
-        };
-        let friction = match impedance {
-            None => friction,
-            Some(impedance) => impedance.resist(friction, &motor, h),
-        };
+        let friction = impedance.resist(self.friction.explicit(&before), &motor, h);
         let motors = match &self.elastic {
             None => rigid(h, torque, &friction),
             Some(elastic) => elastic.eliminate(state, h, torque, &friction),
@@ -86,7 +69,7 @@ impl Drive {
         let ddq = model.forward_dynamics(&state.q, &state.dq, &load, &motors.armature);
         let mut dq = state.dq + ddq * h;
         let mut speed = motors.motor_speed(&dq);
-        if let Some(stiction) = &mut self.stiction {
+        if let DryFriction::Sticking(stiction) = &mut self.friction {
             let links = self.weightless.response(&state.q, &motors.armature) * h;
             let response = JointMatrix::from_fn(|i, j| {
                 let own = if i == j { motors.mobility[i] } else { 0.0 };
@@ -156,7 +139,7 @@ mod tests {
             elasticity,
             ..PlantOptions::default()
         };
-        Drive::new(model, &q0.into(), &options).expect("an option")
+        Drive::realistic(model, &q0.into(), &options)
     }
 
     fn at_rest(q: [f64; DOF]) -> JointState<f64> {
@@ -185,7 +168,7 @@ mod tests {
                 // Another torque every step, up to 1 % from the level.
                 let push = random(&mut rng).component_mul(&JointVector::from(COULOMB))
                     * (0.99 * BREAK_AWAY);
-                state = drive.step(&model, &state, H, &(weight + push), None, &NONE);
+                state = drive.step(&model, &state, H, &(weight + push), &Impedance::NONE, &NONE);
                 match (&drive.elastic, motors) {
                     (Some(elastic), Some(motors)) => assert_eq!(elastic.motor, motors),
                     _ => assert_eq!(state, start),
@@ -206,7 +189,7 @@ mod tests {
                 for n in 0..40 {
                     let mut torque = model.gravity_torque(&state.q);
                     torque[joint] += COULOMB[joint] * if n == 0 { first } else { then };
-                    state = drive.step(&model, &state, H, &torque, None, &NONE);
+                    state = drive.step(&model, &state, H, &torque, &Impedance::NONE, &NONE);
                 }
                 state.dq[joint]
             };
@@ -232,7 +215,7 @@ mod tests {
             let (mut drive, mut state) = (drive(&model, POSTURE, true, false), state);
             let mut steps = 0;
             while state.dq[6] != 0.0 {
-                state = drive.step(&model, &state, h, &NONE, None, &NONE);
+                state = drive.step(&model, &state, h, &NONE, &Impedance::NONE, &NONE);
                 steps += 1;
                 assert_eq!(state.dq.rows(0, 6).amax(), 0.0);
             }
@@ -261,8 +244,10 @@ mod tests {
                     });
                     let back = (state.q - JointVector::from(posture)) * 0.5;
                     let torque = model.gravity_torque(&state.q) + sway - back;
-                    state = drive.step(&model, &state, H, &torque, None, &NONE);
-                    let stiction = drive.stiction.as_ref().expect("on");
+                    state = drive.step(&model, &state, H, &torque, &Impedance::NONE, &NONE);
+                    let DryFriction::Sticking(stiction) = &drive.friction else {
+                        panic!("on");
+                    };
                     worst = worst.max(stiction.residual);
                     let moving = drive.elastic.as_ref().map_or(state.dq, |e| e.motor.dq);
                     let still = moving.iter().filter(|&&speed| speed == 0.0).count();
@@ -302,7 +287,7 @@ mod tests {
                 let start = energy(&model, &drive, &state);
                 let (mut last, mut rise) = (start, 0.0f64);
                 for _ in 0..8000 {
-                    state = drive.step(&model, &state, H, &NONE, None, &NONE);
+                    state = drive.step(&model, &state, H, &NONE, &Impedance::NONE, &NONE);
                     let now = energy(&model, &drive, &state);
                     rise = rise.max((now - last) / start);
                     last = now;
@@ -341,7 +326,7 @@ mod tests {
             let (mut crossings, mut last) = (Vec::new(), drawn(&drive, &state));
             let mut n = 0;
             while crossings.len() < 11 {
-                state = drive.step(&model, &state, h, &NONE, None, &NONE);
+                state = drive.step(&model, &state, h, &NONE, &Impedance::NONE, &NONE);
                 let now = drawn(&drive, &state);
                 if now * last <= 0.0 {
                     crossings.push((f64::from(n) + last / (last - now)) * h);
@@ -382,7 +367,14 @@ mod tests {
             elastic.motor.q = JointVector::from(POSTURE) + load.component_div(&elastic.stiffness);
             let mut state = at_rest(POSTURE);
             for n in 0..2000 {
-                state = drive.step(&model, &state, H, &torque(f64::from(n) * H), None, &NONE);
+                state = drive.step(
+                    &model,
+                    &state,
+                    H,
+                    &torque(f64::from(n) * H),
+                    &Impedance::NONE,
+                    &NONE,
+                );
             }
             (state.q - rigid.q).amax()
         };

@@ -9,7 +9,7 @@
 //! step of one joint has the determinant (2 + w) / (2 + 2 w) < 1 and both its
 //! eigenvalues inside the unit circle.
 
-use controller_core::joint::{JointMatrix, JointState, JointVector};
+use controller_core::joint::{JointMatrix, JointState, JointVector, zeros};
 
 use super::friction::Friction;
 
@@ -29,15 +29,12 @@ pub struct Impedance {
 
 impl Impedance {
     /// No spring and no damper.
-    #[must_use]
-    pub fn none() -> Self {
-        Self {
-            stiffness: JointVector::zeros(),
-            damping: JointVector::zeros(),
-            target: JointVector::zeros(),
-            rate: JointVector::zeros(),
-        }
-    }
+    pub const NONE: Self = Self {
+        stiffness: zeros(),
+        damping: zeros(),
+        target: zeros(),
+        rate: zeros(),
+    };
 
     /// Springs of `stiffness` \[Nm/rad\] to a position that moves evenly from `from` to
     /// `to` \[rad\] during a cycle, with D_i = 2 d_i sqrt(K_i M_ii) for the damping
@@ -72,7 +69,7 @@ impl Impedance {
     /// Whether it does nothing, wherever the arm is.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.stiffness == JointVector::zeros() && self.damping == JointVector::zeros()
+        self.stiffness.amax() == 0.0 && self.damping.amax() == 0.0
     }
 
     /// Torque on the motors \[Nm\], positive along +q, at `state`.
@@ -104,7 +101,7 @@ mod tests {
     use controller_core::arm::LWR_IV;
 
     const POSTURE: [f64; 7] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];
-    const NONE: JointVector<f64> = controller_core::joint::zeros();
+    const NONE: JointVector<f64> = zeros();
 
     /// Every plant there is: kind, stiction, elasticity.
     fn plants() -> impl Iterator<Item = Plant> {
@@ -142,7 +139,7 @@ mod tests {
             for cycle in 0..200 {
                 let t = f64::from(cycle) * 0.002;
                 let push = |_: f64, _: &_, _: &_| JointVector::repeat(0.1);
-                with.advance_with(t, &torque, &Impedance::none(), push);
+                with.advance_with(t, &torque, &Impedance::NONE, push);
                 without.advance(t, &torque, push);
             }
             assert_eq!(with.state(), without.state());

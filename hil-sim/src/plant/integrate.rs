@@ -2,7 +2,7 @@
 
 use controller_core::joint::{JointState, JointVector};
 
-use super::friction::Friction;
+use super::drive::Drive;
 use super::impedance::Impedance;
 use super::model::PlantModel;
 
@@ -15,6 +15,21 @@ pub const REALISTIC_SUBSTEPS: u32 = 8;
 
 /// Longest step of the realistic plant \[s\]; longer cycles take more steps.
 pub const REALISTIC_STEP_MAX: f64 = 0.25e-3;
+
+/// A control cycle as equal steps.
+#[derive(Clone, Copy)]
+pub(super) struct Span {
+    pub t_s: f64,
+    pub cycle_s: f64,
+    pub substeps: u32,
+}
+
+impl Span {
+    /// Length of a step \[s\].
+    fn h(&self) -> f64 {
+        self.cycle_s / f64::from(self.substeps)
+    }
+}
 
 /// Number of equal Runge-Kutta steps for a cycle \[s\].
 pub(super) fn ideal_substeps(cycle_s: f64) -> u32 {
@@ -32,26 +47,24 @@ fn steps_within(cycle_s: f64, longest: f64) -> u32 {
     ((cycle_s / longest - 1e-9).ceil() as u32).max(1)
 }
 
-/// One cycle without friction: `substeps` steps of the classic Runge-Kutta
-/// method of order 4. `contact(t, state)` is the joint torque +J^T F \[Nm\].
-pub(super) fn ideal(
+/// One cycle without friction, by steps of the classic Runge-Kutta method of order 4.
+/// `contact(t, state)` is the joint torque +J^T F \[Nm\].
+pub(super) fn explicit(
     model: &PlantModel,
     start: &JointState<f64>,
-    t_s: f64,
-    cycle_s: f64,
-    substeps: u32,
+    span: &Span,
     torque: &JointVector<f64>,
-    contact: &mut impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
+    mut contact: impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
 ) -> JointState<f64> {
-    let h = cycle_s / f64::from(substeps);
+    let h = span.h();
     let none = JointVector::zeros();
     let mut acceleration = |t: f64, state: &JointState<f64>| {
         let total = torque + contact(t, state);
         model.forward_dynamics(&state.q, &state.dq, &total, &none)
     };
     let mut state = *start;
-    for step in 0..substeps {
-        let t = t_s + h * f64::from(step);
+    for step in 0..span.substeps {
+        let t = span.t_s + h * f64::from(step);
         // The state reached from the start of the step with given slopes.
         let stage = |share: f64, dq: &JointVector<f64>, ddq: &JointVector<f64>| JointState {
             q: state.q + dq * (share * h),
@@ -71,7 +84,8 @@ pub(super) fn ideal(
     state
 }
 
-/// One cycle with the resistance of `joints`, by `substeps` linearly implicit steps.
+/// One cycle of an arm with a drive and springs on the motors, by linearly implicit
+/// steps.
 ///
 /// Around zero speed friction is steep: on joint 7 it has a time constant of
 /// 60 us, which an explicit method would have to resolve. F(dq + h ddq) is
@@ -79,65 +93,51 @@ pub(super) fn ideal(
 /// carry a joint through zero speed, since F' is taken where the step starts,
 /// but it slows it down all the same while h F_c / (M v) < 5.7 with v the
 /// transition speed of friction. Joint 7, the lightest, sets the longest step.
-#[expect(clippy::too_many_arguments, reason = "those of a cycle")]
-pub(super) fn realistic(
+pub(super) fn implicit(
     model: &PlantModel,
+    drive: &mut Drive,
     start: &JointState<f64>,
-    t_s: f64,
-    cycle_s: f64,
-    substeps: u32,
+    span: &Span,
     torque: &JointVector<f64>,
-    joints: &Resistance<'_>,
-    contact: &mut impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
+    impedance: &Impedance,
+    mut contact: impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
 ) -> JointState<f64> {
-    let h = cycle_s / f64::from(substeps);
+    let h = span.h();
     let mut state = *start;
-    for step in 0..substeps {
-        let friction = joints.at(&state, h * f64::from(step), h);
-        let pushed = contact(t_s + h * f64::from(step), &state);
-        let total = torque - friction.torque + pushed;
-        let ddq = model.forward_dynamics(&state.q, &state.dq, &total, &(friction.slope * h));
-        let dq = state.dq + ddq * h;
-        state = JointState {
-            q: state.q + (state.dq + dq) * (0.5 * h),
-            dq,
-        };
+    for step in 0..span.substeps {
+        let elapsed = h * f64::from(step);
+        let pushed = contact(span.t_s + elapsed, &state);
+        let springs = impedance.after(elapsed);
+        state = drive.step(model, &state, h, torque, &springs, &pushed);
     }
     state
 }
 
-/// What resists the motion of rigid joints.
-pub(super) struct Resistance<'a> {
-    /// Friction with a smooth passage through zero speed.
-    pub friction: bool,
-    /// The robot's own springs and dampers.
-    pub impedance: Option<&'a Impedance>,
-}
-
-impl Resistance<'_> {
-    /// For a step of `h` \[s\] that starts at `state`, `elapsed` \[s\] into the cycle.
-    fn at(&self, state: &JointState<f64>, elapsed: f64, h: f64) -> Friction {
-        let friction = if self.friction {
-            Friction::at(&state.dq)
-        } else {
-            Friction::NONE
-        };
-        match self.impedance {
-            None => friction,
-            Some(impedance) => impedance.after(elapsed).resist(friction, state, h),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::options::PlantOptions;
     use super::*;
     use controller_core::arm::LWR_IV;
 
-    const ROUGH: Resistance<'_> = Resistance {
-        friction: true,
-        impedance: None,
-    };
+    /// One cycle of rigid joints with smooth friction.
+    fn rough(
+        model: &PlantModel,
+        state: &JointState<f64>,
+        span: &Span,
+        torque: &JointVector<f64>,
+    ) -> JointState<f64> {
+        let mut drive = Drive::realistic(model, &state.q, &PlantOptions::default());
+        let none = |_: f64, _: &_| JointVector::zeros();
+        implicit(
+            model,
+            &mut drive,
+            state,
+            span,
+            torque,
+            &Impedance::NONE,
+            none,
+        )
+    }
 
     fn start() -> JointState<f64> {
         JointState {
@@ -180,8 +180,12 @@ mod tests {
         // The torque enters as the contact, which is asked for within a step.
         let model = PlantModel::new(&LWR_IV);
         let end = |substeps: u32| {
-            let none = JointVector::zeros();
-            ideal(&model, &start(), 0.0, 0.32, substeps, &none, &mut |t, _| {
+            let span = Span {
+                t_s: 0.0,
+                cycle_s: 0.32,
+                substeps,
+            };
+            explicit(&model, &start(), &span, &JointVector::zeros(), |t, _| {
                 torque(t)
             })
         };
@@ -199,10 +203,13 @@ mod tests {
         let cycle = 0.002;
         let end = |substeps: u32| {
             (0..160).fold(start(), |state, n| {
-                let t = f64::from(n) * cycle;
-                let held = torque(t);
-                let mut none = |_: f64, _: &JointState<f64>| JointVector::zeros();
-                realistic(&model, &state, t, cycle, substeps, &held, &ROUGH, &mut none)
+                let t_s = f64::from(n) * cycle;
+                let span = Span {
+                    t_s,
+                    cycle_s: cycle,
+                    substeps,
+                };
+                rough(&model, &state, &span, &torque(t_s))
             })
         };
         let best = end(1024);
@@ -228,7 +235,12 @@ mod tests {
         let mut energy = model.kinetic_energy(&state);
         let mut falling = true;
         for _ in 0..steps {
-            state = realistic(&model, &state, 0.0, h, 1, &none, &ROUGH, &mut |_, _| none);
+            let span = Span {
+                t_s: 0.0,
+                cycle_s: h,
+                substeps: 1,
+            };
+            state = rough(&model, &state, &span, &none);
             let now = model.kinetic_energy(&state);
             falling &= now <= energy;
             energy = now;

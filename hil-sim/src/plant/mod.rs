@@ -31,7 +31,7 @@ use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointState, JointVector};
 
 use drive::Drive;
-use integrate::Resistance;
+use integrate::Span;
 
 pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
@@ -54,16 +54,15 @@ pub struct Plant {
     cycle_s: f64,
     options: PlantOptions,
     dead_time: DeadTime,
+    drive: Drive,
     imperfections: Option<Imperfections>,
 }
 
-/// What the realistic plant has besides a model and a state.
+/// What the realistic plant has besides a model, a drive and a state.
 #[derive(Clone, Debug)]
 struct Imperfections {
     sensor: Sensor,
     torque_noise: Rng,
-    /// Unless the joints are rigid and their friction smooth.
-    drive: Option<Drive>,
 }
 
 impl Plant {
@@ -103,17 +102,20 @@ impl Plant {
     ) -> Self {
         let nominal = PlantModel::new(parameters);
         let dead_time = DeadTime::new(options.dead_cycles, nominal.gravity_torque(&q0));
-        let (model, imperfections) = match kind {
-            PlantKind::Ideal => (nominal, None),
+        let (model, drive, imperfections) = match kind {
+            PlantKind::Ideal => {
+                let drive = Drive::ideal(&nominal);
+                (nominal, drive, None)
+            }
             PlantKind::Realistic => {
                 let mut rng = Rng::new(seed, noise::stream::MISMATCH);
                 let model = PlantModel::new(&mismatched(parameters, &mut rng));
+                let drive = Drive::realistic(&model, &q0, &options);
                 let imperfections = Imperfections {
                     sensor: Sensor::new(&q0, cycle_s),
                     torque_noise: Rng::new(seed, noise::stream::TORQUE),
-                    drive: Drive::new(&model, &q0, &options),
                 };
-                (model, Some(imperfections))
+                (model, drive, Some(imperfections))
             }
         };
         Self {
@@ -125,6 +127,7 @@ impl Plant {
             cycle_s,
             options,
             dead_time,
+            drive,
             imperfections,
         }
     }
@@ -145,8 +148,7 @@ impl Plant {
     /// joints are elastic.
     #[must_use]
     pub fn motors(&self) -> Option<&JointState<f64>> {
-        let drive = self.imperfections.as_ref()?.drive.as_ref()?;
-        drive.elastic.as_ref().map(|elastic| &elastic.motor)
+        self.drive.elastic.as_ref().map(|elastic| &elastic.motor)
     }
 
     /// What the arm reports at this cycle instant: the true state (ideal), or
@@ -173,7 +175,7 @@ impl Plant {
         torque: &JointVector<f64>,
         external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) {
-        self.advance_with(t_s, torque, &Impedance::none(), external);
+        self.advance_with(t_s, torque, &Impedance::NONE, external);
     }
 
     /// As [`Plant::advance`], with springs and dampers that act on the motors
@@ -188,74 +190,26 @@ impl Plant {
         impedance: &Impedance,
         mut external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) {
-        let impedance = Some(impedance).filter(|impedance| !impedance.is_none());
-        let torque = &self.dead_time.pass(torque);
-        let model = &self.model;
-        let mut contact = |t: f64, state: &JointState<f64>| external(t, model, state);
-        self.state = match &mut self.imperfections {
-            None if impedance.is_some() => {
-                let reference = integrate::realistic_substeps(self.cycle_s);
-                let joints = Resistance {
-                    friction: false,
-                    impedance,
-                };
-                integrate::realistic(
-                    model,
-                    &self.state,
-                    t_s,
-                    self.cycle_s,
-                    self.options.substeps(reference),
-                    torque,
-                    &joints,
-                    &mut contact,
-                )
+        let mut torque = self.dead_time.pass(torque);
+        if let Some(Imperfections { torque_noise, .. }) = &mut self.imperfections {
+            for (torque, deviation) in torque.iter_mut().zip(TORQUE_NOISE) {
+                *torque += deviation * torque_noise.gaussian();
             }
-            None => {
-                let reference = integrate::ideal_substeps(self.cycle_s);
-                let substeps = self.options.substeps(reference);
-                integrate::ideal(
-                    model,
-                    &self.state,
-                    t_s,
-                    self.cycle_s,
-                    substeps,
-                    torque,
-                    &mut contact,
-                )
-            }
-            Some(imperfections) => {
-                let rng = &mut imperfections.torque_noise;
-                let noisy =
-                    JointVector::from_fn(|i, _| torque[i] + TORQUE_NOISE[i] * rng.gaussian());
-                let reference = integrate::realistic_substeps(self.cycle_s);
-                let substeps = self.options.substeps(reference);
-                let (state, cycle_s) = (&self.state, self.cycle_s);
-                match &mut imperfections.drive {
-                    None => integrate::realistic(
-                        model,
-                        state,
-                        t_s,
-                        cycle_s,
-                        substeps,
-                        &noisy,
-                        &Resistance {
-                            friction: true,
-                            impedance,
-                        },
-                        &mut contact,
-                    ),
-                    Some(drive) => drive.cycle(
-                        model,
-                        state,
-                        t_s,
-                        cycle_s,
-                        substeps,
-                        &noisy,
-                        impedance,
-                        &mut contact,
-                    ),
-                }
-            }
+        }
+        let (model, start, cycle_s) = (&self.model, &self.state, self.cycle_s);
+        let contact = |t: f64, state: &JointState<f64>| external(t, model, state);
+        let span = |reference| Span {
+            t_s,
+            cycle_s,
+            substeps: self.options.substeps(reference),
+        };
+        self.state = if self.imperfections.is_none() && impedance.is_none() {
+            let span = span(integrate::ideal_substeps(cycle_s));
+            integrate::explicit(model, start, &span, &torque, contact)
+        } else {
+            let span = span(integrate::realistic_substeps(cycle_s));
+            let drive = &mut self.drive;
+            integrate::implicit(model, drive, start, &span, &torque, impedance, contact)
         };
     }
 }

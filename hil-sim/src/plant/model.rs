@@ -16,14 +16,14 @@ use controller_core::real::Real;
 /// Equations of motion of one arm, M ddq + C dq + g = torque, from its tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantModel {
-    pub(super) links: [Link; DOF],
+    pub(super) links: [Body; DOF],
     pub(super) gravity: Vector3<f64>,
     base_height: f64,
 }
 
-/// One link and the joint that moves it, in the link's own DH frame.
+/// One link as a body, and the joint that moves it, in the link's own DH frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Link {
+pub(super) struct Body {
     a: f64,
     d: f64,
     cos_alpha: f64,
@@ -49,7 +49,7 @@ pub(super) struct Twist {
     pub linear: Vector3<f64>,
 }
 
-impl Link {
+impl Body {
     fn new(link: &LinkParameters) -> Self {
         let (sin_alpha, cos_alpha) = link.alpha.sine_cosine();
         // pi/2 has a cosine of 6e-17 in f64; the tables mean a right angle.
@@ -140,7 +140,7 @@ impl PlantModel {
     #[must_use]
     pub fn new(parameters: &ArmParameters) -> Self {
         Self {
-            links: parameters.links.map(|link| Link::new(&link)),
+            links: parameters.links.map(|link| Body::new(&link)),
             gravity: Vector3::from(parameters.gravity),
             base_height: parameters.base_height,
         }

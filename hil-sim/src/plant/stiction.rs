@@ -40,12 +40,32 @@ pub(super) struct Stiction {
     pub residual: f64,
 }
 
-/// The viscous part of friction alone.
-pub(super) fn viscous(speed: &JointVector<f64>) -> Friction {
-    let slope = JointVector::from(VISCOUS);
-    Friction {
-        torque: slope.component_mul(speed),
-        slope,
+/// What joints have besides friction that grows with the speed.
+#[derive(Clone, Debug)]
+pub(super) enum DryFriction {
+    /// They turn freely, without any friction.
+    None,
+    /// Friction that passes smoothly through zero speed.
+    Smooth,
+    /// Friction that holds.
+    Sticking(Stiction),
+}
+
+impl DryFriction {
+    /// The friction that is a function of the speed \[rad/s\]: where it holds, the
+    /// viscous part alone.
+    pub fn explicit(&self, speed: &JointVector<f64>) -> Friction {
+        match self {
+            Self::None => Friction::NONE,
+            Self::Smooth => Friction::at(speed),
+            Self::Sticking(_) => {
+                let slope = JointVector::from(VISCOUS);
+                Friction {
+                    torque: slope.component_mul(speed),
+                    slope,
+                }
+            }
+        }
     }
 }
 

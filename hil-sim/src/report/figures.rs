@@ -2,12 +2,13 @@
 
 use controller_core::joint::DOF;
 
-use super::plot::{Chart, LimitLine, Mark, Panel, Scale, Series, Stroke, Style};
+use super::plot::{Chart, LimitLine, Panel, Scale, Series, Stroke, Style};
+use super::recording::Recording;
 use super::run::Run;
 use super::scene;
 use super::svg::Svg;
 use super::ticks::plain;
-use crate::summary::Verdict;
+use crate::metrics::LevelFigures;
 use cell::scenario::Metric;
 
 /// Below this, a task acceleration is rounding \[m/s2\].
@@ -27,18 +28,10 @@ pub struct Figure {
     pub drawing: Svg,
 }
 
-/// The figures of a run as files: name and SVG text.
-#[must_use]
-pub fn figures(run: &Run<'_>) -> Vec<(String, String)> {
-    let all = captioned(run).into_iter();
-    all.map(|figure| (figure.file.to_string(), figure.drawing.standalone()))
-        .collect()
-}
-
 /// The figures of a run, in the order of the report. What was not recorded has
 /// no figure.
 #[must_use]
-pub fn captioned(run: &Run<'_>) -> Vec<Figure> {
+pub fn figures(run: &Run<'_>) -> Vec<Figure> {
     let mut figures = vec![task_error(run), external_torque(run), joint_angles(run)];
     figures.extend(priority_leak(run));
     figures.extend(conditioning(run));
@@ -48,77 +41,73 @@ pub fn captioned(run: &Run<'_>) -> Vec<Figure> {
     figures
 }
 
-/// A chart over the whole time of the run, with its contacts.
+/// A chart of this run.
 fn chart(run: &Run<'_>, id: &str, what: &str, description: &str) -> Chart {
-    let mut chart = Chart::over_time(id, format!("{what} \u{2013} {}", run.label()), description);
-    chart.x_range = Some([0.0, run.scenario.duration_s]);
-    chart.bands = run.bands();
-    if run.summary.verdict == Verdict::Stopped
-        && let Some(&at) = run.recording.t().last()
-    {
-        chart.marks.push(Mark {
-            at,
-            label: format!("stopped at {at:.2} s"),
-        });
-    }
-    chart
+    let title = format!("{what} \u{2013} {}", run.label());
+    run.chart(id, title, description)
 }
 
-/// " Shaded: contacts A to D.", or nothing.
-fn shading(run: &Run<'_>) -> String {
-    match run.bands().as_slice() {
+/// A chart as a figure; the caption goes on with what is shaded: " Shaded: contacts A
+/// to D.", or nothing.
+fn figure(run: &Run<'_>, file: &'static str, caption: &str, chart: &Chart) -> Figure {
+    let shaded = match run.bands().as_slice() {
         [] => String::new(),
         [one] => format!(" Shaded: contact {}.", one.label),
         [first, .., last] => format!(" Shaded: contacts {} to {}.", first.label, last.label),
+    };
+    Figure {
+        file,
+        caption: format!("{caption}{shaded}"),
+        drawing: chart.draw(),
     }
 }
 
+/// A panel per level: its axis is titled `what` where there is one level only.
+fn per_level(
+    run: &Run<'_>,
+    what: &str,
+    panel: impl Fn(usize, &LevelFigures) -> (&'static str, Scale, Series),
+) -> Vec<Panel> {
+    let count = run.recording.levels();
+    let levels = run.summary.levels.iter().enumerate().take(count);
+    let panels = levels.map(|(index, level)| {
+        let (unit, scale, line) = panel(index, level);
+        let title = if count == 1 {
+            format!("{what} [{unit}]")
+        } else {
+            format!("level {} [{unit}]", index + 1)
+        };
+        Panel::new(title, Panel::height_among(count), scale, vec![line])
+    });
+    panels.collect()
+}
+
 fn task_error(run: &Run<'_>) -> Figure {
-    let recording = run.recording;
     let mut chart = chart(
         run,
         "task-error",
         "Task error",
         "Norm of every level's task error over time, with the limits it is judged by.",
     );
-    let count = recording.levels();
-    let mut limited = false;
-    for (index, level) in run.summary.levels.iter().enumerate().take(count) {
+    chart.panels = per_level(run, "task error", |index, level| {
         let label = format!("error of level {}, {}", index + 1, level.name);
-        let line = Series::new(
-            label,
-            recording.t(),
-            recording.error_milli(index),
-            Style::solid(index),
-        );
-        let title = if count == 1 {
-            format!("task error [{}]", level.unit().suffix())
-        } else {
-            format!("level {} [{}]", index + 1, level.unit().suffix())
-        };
-        let mut panel = Panel::new(
-            title,
-            Panel::height_among(count),
-            Scale::FromZero,
-            vec![line],
-        );
+        let error = run.recording.error_milli(index);
+        let line = run.recording.line(label, error, Style::solid(index));
+        (level.unit().suffix(), Scale::FromZero, line)
+    });
+    let mut explained = "No limit is set for this plant and these contacts.";
+    for (index, panel) in chart.panels.iter_mut().enumerate() {
         panel.limits = limits(run, index);
-        limited |= !panel.limits.is_empty();
-        chart.panels.push(panel);
+        if !panel.limits.is_empty() {
+            explained = "Broken lines: limits of the largest error, of its rms and of its \
+                         plateau, as labelled.";
+        }
     }
-    let explained = if limited {
-        " Broken lines: limits of the largest error, of its rms and of its plateau, as labelled."
-    } else {
-        " No limit is set for this plant and these contacts."
-    };
-    Figure {
-        file: "task-error.svg",
-        caption: format!(
-            "Task error: distance of the controlled point from its reference, along the level\u{2019}s axes, from the true motion.{explained}{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    }
+    let caption = format!(
+        "Task error: distance of the controlled point from its reference, along the \
+         level\u{2019}s axes, from the true motion. {explained}"
+    );
+    figure(run, "task-error.svg", &caption, &chart)
 }
 
 /// The acceptance limits of a level as lines.
@@ -140,147 +129,100 @@ fn limits(run: &Run<'_>, level: usize) -> Vec<LimitLine> {
     mine.collect()
 }
 
+/// External torque of every joint, true and estimated.
+pub(crate) fn torque_panels(recording: &Recording) -> Vec<Panel> {
+    let panel = |joint| {
+        let estimate: Vec<_> = recording.residual(joint).iter().map(|r| -r).collect();
+        let (wide, thin) = (Style::new(6, Stroke::Wide), Style::new(0, Stroke::Thin));
+        let lines = vec![
+            recording.line("true \u{3c4}_ext", recording.tau_ext(joint), wide),
+            recording.line("estimate \u{2212}r", &estimate, thin),
+        ];
+        let label = format!("joint {} [Nm]", joint + 1);
+        Panel::new(label, Panel::height_among(DOF), Scale::Linear, lines)
+    };
+    (0..DOF).map(panel).collect()
+}
+
 fn external_torque(run: &Run<'_>) -> Figure {
-    let recording = run.recording;
     let mut chart = chart(
         run,
         "external-torque",
         "External torque",
         "External torque of the seven joints over time, true and estimated.",
     );
-    for joint in 0..DOF {
-        let estimate: Vec<_> = recording.residual(joint).iter().map(|r| -r).collect();
-        let lines = vec![
-            Series::new(
-                "true \u{3c4}_ext",
-                recording.t(),
-                recording.tau_ext(joint),
-                Style::new(6, Stroke::Wide),
-            ),
-            Series::new(
-                "estimate \u{2212}r",
-                recording.t(),
-                &estimate,
-                Style::new(0, Stroke::Thin),
-            ),
-        ];
-        let label = format!("joint {} [Nm]", joint + 1);
-        chart.panels.push(Panel::new(
-            label,
-            Panel::height_among(DOF),
-            Scale::Linear,
-            lines,
-        ));
-    }
+    chart.panels = torque_panels(run.recording);
     let friction = if run.summary.plant == "realistic" {
-        " Friction and the errors of the model are part of the estimate: it is not zero without contact."
+        " Friction and the errors of the model are part of the estimate: it is not zero without \
+         contact."
     } else {
         ""
     };
-    Figure {
-        file: "external-torque.svg",
-        caption: format!(
-            "External torque \u{3c4}_ext of M\u{a0}ddq + C\u{a0}dq + g = \u{3c4} \u{2212} \u{3c4}_ext, joint by joint: true, and as the momentum observer estimates it (\u{2212}r). Every joint has its own scale.{friction}{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    }
+    let caption = format!(
+        "External torque \u{3c4}_ext of M\u{a0}ddq + C\u{a0}dq + g = \u{3c4} \u{2212} \
+         \u{3c4}_ext, joint by joint: true, and as the momentum observer estimates it \
+         (\u{2212}r). Every joint has its own scale.{friction}"
+    );
+    figure(run, "external-torque.svg", &caption, &chart)
 }
 
 fn joint_angles(run: &Run<'_>) -> Figure {
-    let recording = run.recording;
     let mut chart = chart(
         run,
         "joint-angles",
         "Joint angles",
         "Positions of the seven joints over time.",
     );
-    let strokes = [Stroke::Solid, Stroke::Dashed];
-    let lines = (0..DOF).map(|joint| {
-        let style = Style::new(joint, strokes[joint % 2]);
-        Series::new(
-            format!("q{}", subscript(joint + 1)),
-            recording.t(),
-            recording.q_deg(joint),
-            style,
-        )
+    let lines = ('\u{2081}'..).take(DOF).enumerate().map(|(joint, number)| {
+        let angle = run.recording.q_deg(joint);
+        let label = format!("q{number}");
+        run.recording.line(label, angle, Style::alternating(joint))
     });
     let mut panel = Panel::new("joint angle [deg]", 300.0, Scale::Linear, lines.collect());
     panel.end_labels = true;
     chart.panels.push(panel);
-    Figure {
-        file: "joint-angles.svg",
-        caption: format!(
-            "Joint angles, true. A contact moves the arm within what the tasks leave free.{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    }
-}
-
-fn subscript(digit: usize) -> char {
-    char::from_u32(0x2080 + digit as u32).unwrap_or('?')
+    let caption = "Joint angles, true. A contact moves the arm within what the tasks leave free.";
+    figure(run, "joint-angles.svg", caption, &chart)
 }
 
 fn priority_leak(run: &Run<'_>) -> Option<Figure> {
-    let recording = run.recording;
-    let count = recording.levels();
-    let levels = run.summary.levels.iter().enumerate().take(count);
-    let panels = levels.map(|(index, level)| {
-        let label = format!("level {}, {}", index + 1, level.name);
-        let style = Style::new(index, Stroke::Thin);
-        let line = Series::new(label, recording.t(), recording.leak(index), style);
-        let scale = Scale::Log { floor: LEAK_FLOOR };
-        let title = if count == 1 {
-            "acceleration [m/s\u{b2}]".to_string()
-        } else {
-            format!("level {} [m/s\u{b2}]", index + 1)
-        };
-        Panel::new(title, Panel::height_among(count), scale, vec![line])
-    });
-    let panels: Vec<_> = panels.collect();
-    if panels.iter().all(Panel::is_empty) {
-        return None;
-    }
     let mut chart = chart(
         run,
         "priority-leak",
         "Priority leak",
         "Task acceleration that lower levels and the null space cause in every level, over time.",
     );
-    chart.panels = panels;
-    Some(Figure {
-        file: "priority-leak.svg",
-        caption: format!(
-            "Priority leak: task acceleration of a level that the torque of everything below it causes on this arm. With an exact model it is rounding; what remains on a mismatched arm is the error of the controller's model. Zero is drawn at the lower edge.{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    })
+    chart.panels = per_level(run, "acceleration", |index, level| {
+        let label = format!("level {}, {}", index + 1, level.name);
+        let (leak, style) = (run.recording.leak(index), Style::new(index, Stroke::Thin));
+        let line = run.recording.line(label, leak, style);
+        ("m/s\u{b2}", Scale::Log { floor: LEAK_FLOOR }, line)
+    });
+    if chart.panels.iter().all(Panel::is_empty) {
+        return None;
+    }
+    let caption = "Priority leak: task acceleration of a level that the torque of everything \
+                   below it causes on this arm. With an exact model it is rounding; what remains \
+                   on a mismatched arm is the error of the controller's model. Zero is drawn at \
+                   the lower edge.";
+    Some(figure(run, "priority-leak.svg", caption, &chart))
 }
 
 fn conditioning(run: &Run<'_>) -> Option<Figure> {
-    let recording = run.recording;
-    let mut lines = Vec::new();
-    for (number, level) in (1..).zip(&run.scenario.levels) {
-        for axis in level.axes.chars() {
-            let row = lines.len();
-            if row < recording.rows().min(DOF) {
-                let style = Style::new(row, [Stroke::Solid, Stroke::Dashed][row % 2]);
-                let label = format!("level {number} {axis}");
-                lines.push(Series::new(
-                    label,
-                    recording.t(),
-                    recording.conditioning(row),
-                    style,
-                ));
-            }
-        }
-    }
+    let levels = (1..).zip(&run.scenario.levels);
+    let rows = levels.flat_map(|(number, level)| {
+        let axes = level.axes.chars();
+        axes.map(move |axis| format!("level {number} {axis}"))
+    });
+    let shown = run.recording.rows().min(DOF);
+    let lines = rows.take(shown).enumerate().map(|(row, label)| {
+        let values = run.recording.conditioning(row);
+        run.recording.line(label, values, Style::alternating(row))
+    });
     let scale = Scale::Log {
         floor: CONDITIONING_FLOOR,
     };
-    let mut panel = Panel::new("|R_kk| [1/\u{221a}kg]", 210.0, scale, lines);
+    let mut panel = Panel::new("|R_kk| [1/\u{221a}kg]", 210.0, scale, lines.collect());
     if panel.is_empty() {
         return None;
     }
@@ -292,19 +234,15 @@ fn conditioning(run: &Run<'_>) -> Option<Figure> {
         "Diagonal of the triangular factor of the task rows over time, on a logarithmic axis.",
     );
     chart.panels.push(panel);
-    Some(Figure {
-        file: "conditioning.svg",
-        caption: format!(
-            "Conditioning: |R_kk| of every task row, logarithmic. It says how far the row is from being unresolvable given the rows above it; a row below 10\u{207b}\u{2074} is dropped.{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    })
+    let caption = "Conditioning: |R_kk| of every task row, logarithmic. It says how far the row \
+                   is from being unresolvable given the rows above it; a row below \
+                   10\u{207b}\u{2074} is dropped.";
+    Some(figure(run, "conditioning.svg", caption, &chart))
 }
 
 fn hand_force(run: &Run<'_>) -> Option<Figure> {
-    let recording = run.recording;
-    let line = Series::new("", recording.t(), recording.hand_force_n(), Style::solid(0));
+    let force = run.recording.hand_force_n();
+    let line = run.recording.line("", force, Style::solid(0));
     if line.is_empty() {
         return None;
     }
@@ -314,45 +252,31 @@ fn hand_force(run: &Run<'_>) -> Option<Figure> {
         "Hand force",
         "Force of the simulated hand on the arm over time.",
     );
-    chart.panels.push(Panel::new(
-        "hand force [N]",
-        190.0,
-        Scale::FromZero,
-        vec![line],
-    ));
-    Some(Figure {
-        file: "hand-force.svg",
-        caption: format!(
-            "Force with which the hand moves the arm against its compliance.{}",
-            shading(run)
-        ),
-        drawing: chart.draw(),
-    })
+    let panel = Panel::new("hand force [N]", 190.0, Scale::FromZero, vec![line]);
+    chart.panels.push(panel);
+    let caption = "Force with which the hand moves the arm against its compliance.";
+    Some(figure(run, "hand-force.svg", caption, &chart))
 }
 
 fn path(run: &Run<'_>) -> Option<Figure> {
-    let drawing = scene::paths(run)?;
     Some(Figure {
         file: "path.svg",
-        caption: "Desired and true path of the controlled points, where the reference moves, and the deviation in the same plane, true less desired: a perfect follower stays at its zero.".into(),
-        drawing,
+        caption: "Desired and true path of the controlled points, where the reference moves, and \
+                  the deviation in the same plane, true less desired: a perfect follower stays \
+                  at its zero."
+            .into(),
+        drawing: scene::paths(run)?,
     })
 }
 
 fn arm(run: &Run<'_>) -> Option<Figure> {
-    let recording = run.recording;
-    if recording.arms.is_empty() {
-        return None;
-    }
-    let labels: Vec<_> = recording
-        .arms
-        .iter()
-        .map(|arm| scene::instant(arm.t_s, &run.bands()))
-        .collect();
     let title = format!("Arm postures \u{2013} {}", run.label());
-    Some(Figure {
+    (!run.recording.arms.is_empty()).then(|| Figure {
         file: "arm.svg",
-        caption: "The arm as lines from the base plate over shoulder, elbow and wrist to the flange, at the start and while contacts press: the same task, other postures. Thin line: path of the first level\u{2019}s point.".into(),
-        drawing: scene::postures(&title, &recording.arms, &labels, &scene::path_of(recording, 0)),
+        caption: "The arm as lines from the base plate over shoulder, elbow and wrist to the \
+                  flange, at the start and while contacts press: the same task, other postures. \
+                  Thin line: path of the first level\u{2019}s point."
+            .into(),
+        drawing: scene::postures(run, &title),
     })
 }

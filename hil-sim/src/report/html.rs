@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::svg::escape;
+use super::svg::{Svg, escape};
 use super::ticks::plain;
-use super::{Run, diagram, figures, palette, tables};
+use super::{Run, diagram, figures, palette, settings, tables};
 use crate::summary::{Summary, Verdict};
+use cell::names::{Named, Switch};
 use cell::scenario::Scenario;
 
 const PAGE_CSS: &str = include_str!("page.css");
@@ -24,7 +25,7 @@ pub fn run_report(run: &Run<'_>) -> String {
     if let Some(link) = &run.summary.link {
         section(&mut body, "Link", &tables::link(link));
     }
-    section(&mut body, "Settings", &tables::settings(run));
+    section(&mut body, "Settings", &settings::settings(run));
     body += &footer(run);
     page(&title, &body)
 }
@@ -54,126 +55,101 @@ pub fn section(body: &mut String, heading: &str, content: &str) {
 
 /// A numbered figure; `caption` is plain text.
 #[must_use]
-pub fn figure(number: usize, drawing: &str, caption: &str) -> String {
+pub fn figure(number: usize, drawing: &Svg, caption: &str) -> String {
     format!(
-        "<figure id=\"fig-{number}\">\n<div class=\"scroll\">{drawing}</div>\n\
+        "<figure id=\"fig-{number}\">\n<div class=\"scroll\">{}</div>\n\
          <figcaption><b>Fig. {number}</b> {}</figcaption>\n</figure>\n",
+        drawing.inline(),
         escape(caption)
     )
 }
 
 fn header(run: &Run<'_>) -> String {
-    let Summary {
-        scenario,
-        controller,
-        plant,
-        seed,
-        contacts,
-        duration_s,
-        cycle_ms,
-        ..
-    } = run.summary;
-    let contacts = if *contacts { "on" } else { "off" };
+    let summary = run.summary;
     let facts = [
-        ("Controller", (*controller).to_string()),
-        ("Plant", (*plant).to_string()),
-        ("Contacts", contacts.to_string()),
-        ("Seed", seed.to_string()),
-        ("Duration", format!("{} s", plain(*duration_s))),
-        ("Cycle", format!("{} ms", plain(*cycle_ms))),
+        ("Controller", summary.controller.to_string()),
+        ("Plant", summary.plant.to_string()),
+        ("Contacts", Switch(summary.contacts).name().to_string()),
+        ("Seed", summary.seed.to_string()),
+        ("Duration", format!("{} s", plain(summary.duration_s))),
+        ("Cycle", format!("{} ms", plain(summary.cycle_ms))),
     ];
-    let mut html = format!(
-        "<header>\n<p class=\"kind\">Run report</p>\n<h1>{}</h1>\n<dl class=\"facts\">\n",
-        escape(scenario)
-    );
-    for (name, value) in facts {
-        let _ = writeln!(
-            html,
-            "<div><dt>{name}</dt><dd>{}</dd></div>",
-            escape(&value)
-        );
-    }
-    html + "</dl>\n</header>\n"
+    let fact = |(name, value)| format!("<div><dt>{name}</dt><dd>{value}</dd></div>\n");
+    let facts: String = facts.into_iter().map(fact).collect();
+    format!(
+        "<header>\n<p class=\"kind\">Run report</p>\n<h1>{}</h1>\n\
+         <dl class=\"facts\">\n{facts}</dl>\n</header>\n",
+        escape(&summary.scenario)
+    )
 }
 
-/// The verdict as icon, word and colour, with its reason. `summary` decides.
+/// A verdict as icon and colour by its `class`, word, and paragraphs of plain text.
+#[must_use]
+pub fn verdict(class: &str, word: &str, reasons: &[&str]) -> String {
+    let icon = match class {
+        "pass" => r#"<circle cx="20" cy="20" r="17"/><path d="M12 21l6 6 11-13"/>"#,
+        "fail" => r#"<circle cx="20" cy="20" r="17"/><path d="M13.500 13.500l13 13m0-13l-13 13"/>"#,
+        "stopped" => {
+            r#"<path d="M13 3.500h14l9.500 9.500v14l-9.500 9.500h-14l-9.500-9.500v-14z"/><path d="M20 11v11m0 6v.5"/>"#
+        }
+        _ => r#"<circle cx="20" cy="20" r="17"/><path d="M12 20h16"/>"#,
+    };
+    let paragraph = |reason: &&str| format!("<p>{}</p>\n", escape(reason));
+    let reasons: String = reasons.iter().map(paragraph).collect();
+    format!(
+        "<section class=\"verdict {class}\" aria-label=\"Verdict\">\n\
+         <svg class=\"icon\" viewBox=\"0 0 40 40\" aria-hidden=\"true\">{icon}</svg>\n\
+         <div><p class=\"word\">{word}</p>\n{reasons}</div>\n</section>\n"
+    )
+}
+
+/// The verdict of a run with its reason. `summary` decides.
 fn banner(summary: &Summary) -> String {
     let judged: Vec<_> = summary
         .acceptance
         .iter()
         .filter_map(|one| one.pass)
         .collect();
+    let all = judged.len();
     let kept = judged.iter().filter(|&&pass| pass).count();
-    let reason = summary
-        .reason
-        .clone()
-        .unwrap_or_else(|| match judged.len() {
-            0 if summary.acceptance.is_empty() => {
-                "The scenario sets no limit for such a run.".to_string()
-            }
-            0 => "No limit could be judged: there are no samples.".to_string(),
-            1 => "The one limit is kept.".to_string(),
-            all => format!("All {all} limits are kept."),
-        });
-    let (class, icon, more) = match summary.verdict {
-        Verdict::Pass if judged.is_empty() => (
-            "none",
-            r#"<circle cx="20" cy="20" r="17"/><path d="M12 20h16"/>"#,
-            String::new(),
-        ),
-        Verdict::Pass => (
-            "pass",
-            r#"<circle cx="20" cy="20" r="17"/><path d="M12 21l6 6 11-13"/>"#,
-            String::new(),
-        ),
-        Verdict::Fail => (
-            "fail",
-            r#"<circle cx="20" cy="20" r="17"/><path d="M13.500 13.500l13 13m0-13l-13 13"/>"#,
-            format!("{kept} of {} limits kept.", judged.len()),
-        ),
-        Verdict::Stopped => (
-            "stopped",
-            r#"<path d="M13 3.500h14l9.500 9.500v14l-9.500 9.500h-14l-9.500-9.500v-14z"/><path d="M20 11v11m0 6v.5"/>"#,
-            format!("The run ended after {} cycles.", summary.cycles),
-        ),
+    let good = match all {
+        0 if summary.acceptance.is_empty() => "The scenario sets no limit for such a run.",
+        0 => "No limit could be judged: there are no samples.",
+        1 => "The one limit is kept.",
+        _ => &format!("All {all} limits are kept."),
     };
-    let mut html = format!(
-        "<section class=\"verdict {class}\" aria-label=\"Verdict\">\n\
-         <svg class=\"icon\" viewBox=\"0 0 40 40\" aria-hidden=\"true\">{icon}</svg>\n\
-         <div><p class=\"word\">{}</p>\n",
-        summary.verdict_word().to_uppercase()
-    );
-    // The reason of a failure is a list of limits, that of a stop one sentence.
-    let reasons: Vec<_> = match summary.verdict {
-        Verdict::Fail => reason.split("; ").collect(),
-        Verdict::Pass | Verdict::Stopped => vec![reason.as_str()],
-    };
-    for part in reasons
-        .into_iter()
-        .chain([more.as_str()])
-        .filter(|part| !part.is_empty())
-    {
-        let _ = writeln!(html, "<p>{}</p>", escape(part));
+    let reason = summary.reason.as_deref().unwrap_or(good);
+    let word = summary.verdict_word().to_uppercase();
+    match summary.verdict {
+        Verdict::Pass if all == 0 => verdict("none", &word, &[reason]),
+        Verdict::Pass => verdict("pass", &word, &[reason]),
+        // The reason of a failure is a list of limits, that of a stop one sentence.
+        Verdict::Fail => {
+            let kept = format!("{kept} of {all} limits kept.");
+            let reasons: Vec<_> = reason.split("; ").chain([kept.as_str()]).collect();
+            verdict("fail", &word, &reasons)
+        }
+        Verdict::Stopped => {
+            let end = format!("The run ended after {} cycles.", summary.cycles);
+            verdict("stopped", &word, &[reason, &end])
+        }
     }
-    html + "</div>\n</section>\n"
 }
 
 fn drawings(run: &Run<'_>) -> String {
-    let mut html = String::new();
-    let mut number = 0;
-    for one in figures::captioned(run) {
-        number += 1;
-        html += &figure(number, &one.drawing.inline(), &one.caption);
-    }
+    let mut drawings: Vec<_> = figures::figures(run)
+        .into_iter()
+        .map(|figure| (figure.drawing, figure.caption))
+        .collect();
     if run.summary.controller == "hierarchical" {
-        html += &figure(
-            number + 1,
-            &diagram::drawing().inline(),
-            "The controller of this run: references by priority, compliance in what the tasks \
-             leave free, external torque estimated from momentum and compensated on the tasks.",
-        );
+        let caption = "The controller of this run: references by priority, compliance in what \
+                       the tasks leave free, external torque estimated from momentum and \
+                       compensated on the tasks.";
+        drawings.push((diagram::drawing(), caption.to_string()));
     }
-    html
+    let numbered = (1..).zip(&drawings);
+    let html = numbered.map(|(number, (drawing, caption))| figure(number, drawing, caption));
+    html.collect()
 }
 
 fn footer(run: &Run<'_>) -> String {
@@ -200,32 +176,37 @@ fn command(run: &Run<'_>) -> String {
         "hil-sim run {} --plant {} --contacts {} --controller {} --seed {}",
         summary.scenario,
         summary.plant,
-        if summary.contacts { "on" } else { "off" },
+        Switch(summary.contacts).name(),
         summary.controller,
         summary.seed
     );
-    let stiffness = cell::names::Named::name(run.choices.null_stiffness);
+    let stiffness = run.choices.null_stiffness.name();
     if stiffness != "normal" {
         let _ = write!(line, " --null-stiffness {stiffness}");
     }
     let own = Scenario::find(&summary.scenario).ok();
-    if own
-        .as_ref()
-        .is_none_or(|own| own.duration_s != summary.duration_s)
-    {
-        let _ = write!(line, " --duration {}", summary.duration_s);
-    }
-    if own
-        .as_ref()
-        .is_none_or(|own| own.cycle_ms != summary.cycle_ms)
-    {
-        let _ = write!(line, " --cycle-ms {}", summary.cycle_ms);
+    for (option, value, own) in [
+        (
+            "duration",
+            summary.duration_s,
+            own.as_ref().map(|own| own.duration_s),
+        ),
+        (
+            "cycle-ms",
+            summary.cycle_ms,
+            own.as_ref().map(|own| own.cycle_ms),
+        ),
+    ] {
+        if own != Some(value) {
+            let _ = write!(line, " --{option} {value}");
+        }
     }
     line
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::figures::Figure;
     use super::super::recording::{ArmSnapshot, Recording};
     use super::super::svg::well_formed;
     use super::*;
@@ -296,7 +277,8 @@ mod tests {
             let html = run_report(&run);
             well_formed(&html).unwrap_or_else(|error| panic!("{value}: {error}"));
             assert!(!html.contains("NaN"), "{value}");
-            for (name, svg) in figures::figures(&run) {
+            for Figure { file, drawing, .. } in figures::figures(&run) {
+                let (name, svg) = (file, drawing.standalone());
                 well_formed(&svg).unwrap_or_else(|error| panic!("{name}: {error}"));
                 assert!(svg.len() < 300_000 && !svg.contains("NaN"), "{name}");
             }

@@ -17,13 +17,12 @@ pub mod plot;
 pub mod recording;
 mod run;
 pub mod scene;
+mod settings;
 pub mod svg;
 pub(crate) mod tables;
 pub mod ticks;
 
-pub use diagram::block_diagram;
 pub use figures::figures;
 pub use html::run_report;
 pub use recording::Recording;
 pub use run::{Choices, Run, letter};
-pub use scene::snapshots;

@@ -55,33 +55,16 @@ const RULES: &str = "\
 /// with drawings in it.
 #[must_use]
 pub fn drawing_css() -> String {
-    let mut css = variables();
-    css += &with_fallback(RULES);
-    for k in 0..COLOURS {
-        let _ = write!(
-            css,
-            "{}",
-            with_fallback(&format!(
-                ".plot .s{k}{{stroke:$s{k}}}.plot .f{k}{{fill:$s{k}}}\n"
-            ))
-        );
-    }
-    css
+    let curve = |k| format!(".plot .s{k}{{stroke:$s{k}}}.plot .f{k}{{fill:$s{k}}}\n");
+    let curves: String = (0..COLOURS).map(curve).collect();
+    variables() + &with_fallback(RULES) + &with_fallback(&curves)
 }
 
 /// `:root` with the colours: light, dark where asked for, light in print.
 fn variables() -> String {
-    let block = |pick: fn(&(&str, &str, &str)) -> (String, String)| {
-        TOKENS
-            .iter()
-            .map(pick)
-            .fold(String::new(), |mut css, (name, value)| {
-                let _ = write!(css, "--{name}:{value};");
-                css
-            })
-    };
-    let light = block(|(name, light, _)| ((*name).to_string(), (*light).to_string()));
-    let dark = block(|(name, _, dark)| ((*name).to_string(), (*dark).to_string()));
+    let light = TOKENS.map(|(name, light, _)| format!("--{name}:{light};"));
+    let dark = TOKENS.map(|(name, _, dark)| format!("--{name}:{dark};"));
+    let (light, dark) = (light.concat(), dark.concat());
     format!(":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n")
 }
 
@@ -99,10 +82,8 @@ fn with_fallback(rules: &str) -> String {
             .find(|c: char| !c.is_ascii_alphanumeric())
             .unwrap_or(tail.len());
         let (name, end) = tail.split_at(length);
-        let light = TOKENS
-            .iter()
-            .find(|token| token.0 == name)
-            .map_or("", |token| token.1);
+        let token = TOKENS.iter().find(|token| token.0 == name);
+        let light = token.map_or("", |token| token.1);
         let property = &part[..start];
         let _ = write!(css, "{property}{light};{property}var(--{name}){end}");
     }

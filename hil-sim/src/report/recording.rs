@@ -10,6 +10,7 @@ use controller_core::joint::JointState;
 use record::channel::{Channel, Value};
 use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
+use super::plot::{Series, Style};
 use crate::contact::Contacts;
 use crate::plant::PlantModel;
 
@@ -192,6 +193,12 @@ impl Recording {
         }
     }
 
+    /// A line of one of the series over time.
+    #[must_use]
+    pub fn line(&self, label: impl Into<String>, values: &[f64], style: Style) -> Series {
+        Series::new(label, &self.t, values, style)
+    }
+
     /// Times \[s\] of all series.
     #[must_use]
     pub fn t(&self) -> &[f64] {
@@ -240,7 +247,7 @@ impl Recording {
         self.column("hand_force", 0)
     }
 
-    /// Norm of a level's task error \[mm\].
+    /// Norm of a level's task error \[mm\], of an orientation \[mrad\].
     #[must_use]
     pub fn error_milli(&self, level: usize) -> &[f64] {
         self.level(level, "e{level}", 0)

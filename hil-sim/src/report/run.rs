@@ -1,6 +1,6 @@
 //! What a report is about: a finished run and what was chosen for it.
 
-use super::plot::Band;
+use super::plot::{Band, Chart, Mark};
 use super::recording::Recording;
 use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
@@ -123,6 +123,22 @@ impl<'a> Run<'a> {
                 label: letter(index),
             })
             .collect()
+    }
+
+    /// A chart without panels over the whole time of the run, with its contacts, and
+    /// where it was stopped.
+    #[must_use]
+    pub fn chart(&self, id: &str, title: impl Into<String>, description: &str) -> Chart {
+        let mut chart = Chart::over_time(id, title, description);
+        chart.x_range = Some([0.0, self.scenario.duration_s]);
+        chart.bands = self.bands();
+        if self.summary.verdict == Verdict::Stopped
+            && let Some(&at) = self.recording.t().last()
+        {
+            let label = format!("stopped at {at:.2} s");
+            chart.marks.push(Mark { at, label });
+        }
+        chart
     }
 
     /// "two-level, hierarchical, realistic plant, seed 1".

@@ -14,6 +14,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const PATH_POINTS: usize = 900;
 /// A reference that moves less than this is at rest \[m\].
 const AT_REST: f64 = 1e-4;
+/// Size of a path's plot area \[px\].
+const AREA: [f64; 2] = [350.0, 330.0];
 const RIGHT: f64 = 16.0;
 const BELOW: f64 = 44.0;
 
@@ -34,11 +36,44 @@ fn spread(values: &[f64]) -> f64 {
 }
 
 /// A legend in one row.
-fn legend(svg: &mut Svg, [mut x, y]: [f64; 2], entries: &[(Style, String)]) {
+fn legend(svg: &mut Svg, [mut x, y]: [f64; 2], entries: &[(Style, &str)]) {
     for (style, label) in entries {
         svg.line(&style.class(), [x, y], [x + 26.0, y]);
         svg.text("", [x + 32.0, y + 4.0], Anchor::Start, label);
-        x += 50.0 + text_width(label, 12.0);
+        x += entry_width(label);
+    }
+}
+
+fn entry_width(label: &str) -> f64 {
+    50.0 + text_width(label, 12.0)
+}
+
+/// Curves \[mm\] in a plot area under a name and a legend, around zero if that is what
+/// they deviate from.
+struct Area<'a> {
+    name: &'a str,
+    axes: [String; 2],
+    around_zero: bool,
+    curves: &'a [(Style, Vec<[f64; 2]>)],
+    legend: &'a [(Style, &'a str)],
+}
+
+impl Area<'_> {
+    fn draw(&self, svg: &mut Svg, [left, top]: [f64; 2]) {
+        let points = self.curves.iter().flat_map(|(_, points)| points);
+        let zero = self.around_zero.then_some(&[0.0, 0.0]);
+        let view = View::new([left, top], AREA, points.chain(zero));
+        view.axes(svg, &self.axes);
+        if self.around_zero {
+            let ([x, y], [right, bottom]) = (view.pixel([0.0, 0.0]), view.far_corner());
+            svg.line("axis", [left, y], [right, y]);
+            svg.line("axis", [x, top], [x, bottom]);
+        }
+        for (style, points) in self.curves {
+            svg.curve(&style.class(), &view.pixels(points), "");
+        }
+        svg.text("b", [left, top - 30.0], Anchor::Start, self.name);
+        legend(svg, [left, top - 14.0], self.legend);
     }
 }
 
@@ -46,22 +81,16 @@ fn legend(svg: &mut Svg, [mut x, y]: [f64; 2], entries: &[(Style, String)]) {
 /// deviation; none if there is no such level.
 #[must_use]
 pub fn paths(run: &Run<'_>) -> Option<Svg> {
-    const SIDE: f64 = 330.0;
     const TOP: f64 = 72.0;
     let recording = run.recording;
-    let levels = run
-        .scenario
-        .levels
-        .iter()
-        .enumerate()
-        .take(recording.levels());
+    let levels = (run.scenario.levels.iter().enumerate()).take(recording.levels());
     let drawn: Vec<_> = levels
         .filter(|(_, level)| level.axes.len() >= 2 && !recording.t().is_empty())
         .collect();
     if drawn.is_empty() {
         return None;
     }
-    let step = SIDE + BELOW + TOP;
+    let step = AREA[1] + BELOW + TOP;
     let title = format!("Path \u{2013} {}", run.label());
     let mut svg = Svg::new(
         "path",
@@ -71,83 +100,39 @@ pub fn paths(run: &Run<'_>) -> Option<Svg> {
     );
     svg.text("t", [LEFT, 16.0], Anchor::Start, &title);
     for (place, (index, level)) in drawn.into_iter().enumerate() {
-        let top = place as f64 * step + TOP;
         let [a, b] = plane(recording, index, &level.axes);
         let moves = spread(recording.desired(index, a)) + spread(recording.desired(index, b));
         let series = |pick: fn(&Recording, usize, usize) -> &[f64]| {
-            let (u, v) = (pick(recording, index, a), pick(recording, index, b));
-            u.iter()
-                .zip(v)
-                .map(|(u, v)| [u * 1e3, v * 1e3])
-                .collect::<Vec<_>>()
+            let pairs = pick(recording, index, a)
+                .iter()
+                .zip(pick(recording, index, b));
+            pairs.map(|(u, v)| [u * 1e3, v * 1e3]).collect::<Vec<_>>()
         };
         let (desired, actual) = (series(Recording::desired), series(Recording::actual));
         let pairs = desired.iter().zip(&actual);
         let deviation: Vec<_> = pairs.map(|(d, x)| [x[0] - d[0], x[1] - d[1]]).collect();
         let name = format!("Level {}, {}", index + 1, level.label());
-        let solid = Style::solid(index);
-        let wide = Style::new(6, Stroke::Wide);
-        let mut left = LEFT;
+        let (wide, thin) = (Style::new(6, Stroke::Wide), Style::new(index, Stroke::Thin));
+        let mut corner = [LEFT, place as f64 * step + TOP];
         if moves > AT_REST {
-            let corner = [left, top];
-            let (desired, actual) = (thinned(&desired), thinned(&actual));
-            let view = View::new(
-                corner,
-                [SIDE + 20.0, SIDE],
-                desired.iter().chain(&actual),
-                &[],
-            );
-            view.axes(
-                &mut svg,
-                [&format!("{} [mm]", AXES[a]), &format!("{} [mm]", AXES[b])],
-            );
-            svg.curve(&wide.class(), &view.pixels(&desired), "");
-            svg.curve(
-                &Style::new(index, Stroke::Thin).class(),
-                &view.pixels(&actual),
-                "",
-            );
-            svg.text("b", [left, top - 30.0], Anchor::Start, &name);
-            let entries = [
-                (wide, "desired".into()),
-                (Style::new(index, Stroke::Thin), "true".into()),
-            ];
-            legend(&mut svg, [left, top - 14.0], &entries);
-            left += SIDE + 20.0 + LEFT + 22.0;
+            let path = Area {
+                name: &name,
+                axes: [a, b].map(|axis| format!("{} [mm]", AXES[axis])),
+                around_zero: false,
+                curves: &[(wide, thinned(&desired)), (thin, thinned(&actual))],
+                legend: &[(wide, "desired"), (thin, "true")],
+            };
+            path.draw(&mut svg, corner);
+            corner[0] += AREA[0] + LEFT + 22.0;
         }
-        let deviation = thinned(&deviation);
-        let view = View::new(
-            [left, top],
-            [SIDE + 20.0, SIDE],
-            deviation.iter(),
-            &[[0.0, 0.0]],
-        );
-        view.axes(
-            &mut svg,
-            [
-                &format!("\u{394}{} [mm]", AXES[a]),
-                &format!("\u{394}{} [mm]", AXES[b]),
-            ],
-        );
-        let ([x, y], [right, bottom]) = (view.pixel([0.0, 0.0]), view.far_corner());
-        svg.line("axis", [left, y], [right, y]);
-        svg.line("axis", [x, top], [x, bottom]);
-        svg.curve(
-            &Style::new(index, Stroke::Thin).class(),
-            &view.pixels(&deviation),
-            "",
-        );
-        svg.text(
-            "b",
-            [left, top - 30.0],
-            Anchor::Start,
-            &format!("{name}: deviation"),
-        );
-        legend(
-            &mut svg,
-            [left, top - 14.0],
-            &[(solid, "true less desired".into())],
-        );
+        let deviation = Area {
+            name: &format!("{name}: deviation"),
+            axes: [a, b].map(|axis| format!("\u{394}{} [mm]", AXES[axis])),
+            around_zero: true,
+            curves: &[(thin, thinned(&deviation))],
+            legend: &[(Style::solid(index), "true less desired")],
+        };
+        deviation.draw(&mut svg, corner);
     }
     Some(svg)
 }
@@ -170,26 +155,21 @@ fn plane(recording: &Recording, level: usize, axes: &str) -> [usize; 2] {
     order.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
     order.truncate(2);
     order.sort_unstable();
-    [
-        order.first().copied().unwrap_or(0),
-        order.get(1).copied().unwrap_or(1),
-    ]
+    [0, 1].map(|k| order.get(k).copied().unwrap_or(k))
 }
 
-/// The true path of a level's point \[m\].
-#[must_use]
-pub fn path_of(recording: &Recording, level: usize) -> Vec<[f64; 3]> {
-    if level >= recording.levels() {
+/// The true path of the first level's point \[m\].
+fn first_path(recording: &Recording) -> Vec<[f64; 3]> {
+    if recording.levels() == 0 {
         return Vec::new();
     }
-    let axis = |axis| recording.actual(level, axis);
+    let axis = |axis| recording.actual(0, axis);
     let pairs = axis(0).iter().zip(axis(1)).zip(axis(2));
     pairs.map(|((x, y), z)| [*x, *y, *z]).collect()
 }
 
 /// "start", "5.7 s (A)" or "5.7 s".
-#[must_use]
-pub fn instant(t_s: f64, bands: &[Band]) -> String {
+fn instant(t_s: f64, bands: &[Band]) -> String {
     let inside = |band: &&Band| t_s >= band.from - 1e-9 && t_s <= band.to + 1e-9;
     match bands.iter().find(inside) {
         _ if !t_s.is_finite() => "\u{2013}".to_string(),
@@ -199,16 +179,16 @@ pub fn instant(t_s: f64, bands: &[Band]) -> String {
     }
 }
 
-/// The arm at several instants from the side and from the front, with a path.
+/// The arm at several instants from the side and from the front, with the path of the
+/// first level's point.
 #[must_use]
-pub fn snapshots(arms: &[ArmSnapshot], path: &[[f64; 3]]) -> String {
-    let labels: Vec<_> = arms.iter().map(|arm| instant(arm.t_s, &[])).collect();
-    postures("Arm postures", arms, &labels, path).standalone()
+pub fn postures(run: &Run<'_>, title: &str) -> Svg {
+    let (arms, bands) = (&run.recording.arms, run.bands());
+    let labels: Vec<_> = arms.iter().map(|arm| instant(arm.t_s, &bands)).collect();
+    stick_figures(title, arms, &labels, &first_path(run.recording))
 }
 
-/// The same with a title and a label for every instant.
-#[must_use]
-pub fn postures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f64; 3]]) -> Svg {
+fn stick_figures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f64; 3]]) -> Svg {
     const SIZE: [f64; 2] = [350.0, 350.0];
     let mut svg = Svg::new(
         "arm",
@@ -220,11 +200,11 @@ pub fn postures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f
     // The legend wraps: there may be as many postures as contacts.
     let (mut x, mut y) = (LEFT, 38.0);
     for (k, label) in labels.iter().enumerate() {
-        let width = 50.0 + text_width(label, 12.0);
+        let width = entry_width(label);
         if x + width > 900.0 - RIGHT {
             (x, y) = (LEFT, y + 19.0);
         }
-        legend(&mut svg, [x, y], &[(arm_style(k), label.clone())]);
+        legend(&mut svg, [x, y], &[(arm_style(k), label)]);
         x += width;
     }
     let top = y + 38.0;
@@ -239,19 +219,13 @@ pub fn postures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f
     };
     let fitted = views.map(|(axes, _)| {
         let points: Vec<_> = all(axes).collect();
-        View::new([0.0, top], SIZE, points.iter(), &[[0.0, 0.0]])
+        View::new([0.0, top], SIZE, points.iter().chain(&[[0.0, 0.0]]))
     });
     let scale = fitted[0].scale.min(fitted[1].scale);
     for (k, (mut view, (axes, name))) in fitted.into_iter().zip(views).enumerate() {
         view.scale = scale;
         view.corner[0] = LEFT + k as f64 * (SIZE[0] + LEFT + 22.0);
-        view.axes(
-            &mut svg,
-            [
-                &format!("{} [m]", AXES[axes[0]]),
-                &format!("{} [m]", AXES[axes[1]]),
-            ],
-        );
+        view.axes(&mut svg, &axes.map(|axis| format!("{} [m]", AXES[axis])));
         svg.text("b", [view.corner[0], top - 9.0], Anchor::Start, name);
         let line: Vec<_> = path.iter().map(|p| flat(axes, p)).collect();
         svg.curve("axis", &view.pixels(&thinned(&line)), "");
@@ -259,16 +233,9 @@ pub fn postures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f
         svg.line("wire", [bx - 22.0, by], [bx + 22.0, by]);
         for (index, arm) in arms.iter().enumerate() {
             let style = arm_style(index);
-            let class = style.class();
-            let joints: Vec<_> = arm
-                .joints
-                .iter()
-                .map(|p| view.pixel(flat(axes, p)))
-                .collect();
-            let links: Vec<_> = std::iter::once([bx, by])
-                .chain(joints.iter().copied())
-                .collect();
-            svg.curve(&class, &links, r#" style="stroke-width:3""#);
+            let joints = arm.joints.map(|p| view.pixel(flat(axes, &p)));
+            let links = [&[[bx, by]], &joints[..]].concat();
+            svg.curve(&style.class(), &links, r#" style="stroke-width:3""#);
             for joint in joints {
                 svg.circle(&format!("bg s{}", style.colour), joint, 3.2);
             }
@@ -278,11 +245,7 @@ pub fn postures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f
 }
 
 fn arm_style(index: usize) -> Style {
-    let index = (index + 6) % super::palette::COLOURS;
-    Style::new(
-        index,
-        [Stroke::Solid, Stroke::Dashed][usize::from(index % 2 == 1)],
-    )
+    Style::alternating((index + 6) % super::palette::COLOURS)
 }
 
 #[cfg(test)]
@@ -307,7 +270,9 @@ mod tests {
             (0..40).map(|k| arm(f64::from(k))).collect(),
             vec![arm(f64::NAN)],
         ] {
-            let file = snapshots(&arms, &[[0.4, 0.1, 0.5], [0.4, f64::NAN, 0.5]]);
+            let labels: Vec<_> = arms.iter().map(|arm| instant(arm.t_s, &[])).collect();
+            let path = [[0.4, 0.1, 0.5], [0.4, f64::NAN, 0.5]];
+            let file = stick_figures("Arm", &arms, &labels, &path).standalone();
             well_formed(&file).unwrap();
             assert!(!file.contains("NaN"));
         }

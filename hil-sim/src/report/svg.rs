@@ -1,7 +1,7 @@
 //! A small SVG writer: shapes and text with classes, numbers rounded to
 //! hundredths, text escaped. What is not finite is never written.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use super::palette;
 
@@ -58,70 +58,44 @@ impl Svg {
         Self { height, ..self }
     }
 
-    /// A filled shape with these corners.
-    pub fn polygon(&mut self, class: &str, corners: &[[f64; 2]]) {
-        let points: Vec<_> = corners
-            .iter()
-            .map(|[x, y]| format!("{},{}", number(*x), number(*y)))
-            .collect();
-        let _ = writeln!(
-            self.body,
-            r#"<polygon class="{class}" points="{}"/>"#,
-            points.join(" ")
-        );
-    }
-
     /// A straight line.
     pub fn line(&mut self, class: &str, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2]) {
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(number);
-        let _ = writeln!(
-            self.body,
+        self.element(format_args!(
             r#"<line class="{class}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>"#
-        );
+        ));
     }
 
-    /// A rectangle with corners rounded by `radius`.
-    pub fn rect(&mut self, class: &str, [x, y]: [f64; 2], [w, h]: [f64; 2], radius: f64) {
+    /// A rectangle.
+    pub fn rect(&mut self, class: &str, [x, y]: [f64; 2], [w, h]: [f64; 2]) {
         let [x, y, w, h] = [x, y, w.max(0.0), h.max(0.0)].map(number);
-        let corner = if radius > 0.0 {
-            format!(r#" rx="{}""#, number(radius))
-        } else {
-            String::new()
-        };
-        let _ = writeln!(
-            self.body,
-            r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"{corner}/>"#
-        );
+        self.element(format_args!(
+            r#"<rect class="{class}" x="{x}" y="{y}" width="{w}" height="{h}"/>"#
+        ));
     }
 
     /// A disc.
     pub fn circle(&mut self, class: &str, [x, y]: [f64; 2], radius: f64) {
         let [x, y, r] = [x, y, radius].map(number);
-        let _ = writeln!(
-            self.body,
+        self.element(format_args!(
             r#"<circle class="{class}" cx="{x}" cy="{y}" r="{r}"/>"#
-        );
+        ));
     }
 
     /// A line of text; `y` is the baseline.
     pub fn text(&mut self, class: &str, [x, y]: [f64; 2], anchor: Anchor, text: &str) {
-        let [x, y] = [x, y].map(number);
-        let _ = writeln!(
-            self.body,
-            r#"<text class="{class}" x="{x}" y="{y}" text-anchor="{}">{}</text>"#,
-            anchor.name(),
-            escape(text)
-        );
+        let ([x, y], anchor, text) = ([x, y].map(number), anchor.name(), escape(text));
+        self.element(format_args!(
+            r#"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#
+        ));
     }
 
     /// Text that reads upwards, centred at the point.
     pub fn text_upwards(&mut self, class: &str, [x, y]: [f64; 2], text: &str) {
-        let [x, y] = [x, y].map(number);
-        let _ = writeln!(
-            self.body,
-            r#"<text class="{class}" transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{}</text>"#,
-            escape(text)
-        );
+        let ([x, y], text) = ([x, y].map(number), escape(text));
+        self.element(format_args!(
+            r#"<text class="{class}" transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{text}</text>"#
+        ));
     }
 
     /// A curve through `points`; what is not finite is a gap. `extra` is more
@@ -129,21 +103,20 @@ impl Svg {
     pub fn curve(&mut self, class: &str, points: &[[f64; 2]], extra: &str) {
         let d = path_data(points);
         if !d.is_empty() {
-            let _ = writeln!(self.body, r#"<path class="{class}"{extra} d="{d}"/>"#);
+            self.element(format_args!(r#"<path class="{class}"{extra} d="{d}"/>"#));
         }
     }
 
     /// An element as it is.
-    pub fn raw(&mut self, element: &str) {
-        self.body += element;
-        self.body.push('\n');
+    pub fn element(&mut self, element: impl Display) {
+        let _ = writeln!(self.body, "{element}");
     }
 
     /// A rectangle that clips what refers to it; gives the attribute to refer.
     pub fn clip(&mut self, [x, y]: [f64; 2], [w, h]: [f64; 2], number_of: usize) -> String {
         let id = format!("{}-clip{number_of}", self.id);
         let [x, y, w, h] = [x, y, w, h].map(number);
-        self.raw(&format!(
+        self.element(format_args!(
             r#"<clipPath id="{id}"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>"#
         ));
         format!(r#" clip-path="url(#{id})""#)
@@ -192,13 +165,7 @@ pub fn number(value: f64) -> String {
 }
 
 fn hundredths(value: i64) -> String {
-    let sign = if value < 0 { "-" } else { "" };
-    let (whole, rest) = (value.unsigned_abs() / 100, value.unsigned_abs() % 100);
-    match rest {
-        0 => format!("{sign}{whole}"),
-        rest if rest % 10 == 0 => format!("{sign}{whole}.{}", rest / 10),
-        rest => format!("{sign}{whole}.{rest:02}"),
-    }
+    (value as f64 / 100.0).to_string()
 }
 
 /// Path data of a line with gaps: steps between positions that are rounded

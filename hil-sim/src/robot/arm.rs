@@ -232,7 +232,7 @@ impl Robot {
     /// What happened so far.
     #[must_use]
     pub fn events(&self) -> &[Event] {
-        self.counters.events()
+        &self.counters.link.events
     }
 
     /// What this robot is.

@@ -5,6 +5,7 @@ use fri::{InterfaceState, Measurement};
 
 use super::arm::{Robot, Seen, Start};
 use super::driving::{Driving, Limited};
+use super::figures::Event;
 use super::inbox::{self, Answer};
 use super::krc::Now;
 use super::options::{RobotAdds, cycles};
@@ -45,16 +46,16 @@ impl Robot {
         let order = match order::read(datagram) {
             Ok(order) => order,
             Err(error) => {
-                inbox::count_error(&mut self.counters.rejected, &error);
+                inbox::count_error(&mut self.counters.link.rejected, &error);
                 return Answer::Rejected;
             }
         };
-        let place = match self.inbox.place(&order, &mut self.counters) {
+        let place = match self.inbox.place(&order, &mut self.counters.link) {
             Ok(place) => place,
             Err(answer) => return answer,
         };
         if let Err(refusal) = self.krc.accept(&order, &q) {
-            inbox::count_refusal(&mut self.counters.rejected, refusal);
+            inbox::count_refusal(&mut self.counters.link.rejected, refusal);
             return Answer::Rejected;
         }
         let behind = self.cycle - place;
@@ -108,14 +109,20 @@ impl Robot {
         } = whole.limited(motors, &self.torque_limit);
         if let (Some(last), true) = (self.applied, bridging) {
             let by_link = applied - last - self.krc.ordered_change();
-            self.counters.step = self.counters.step.max(by_link.amax());
+            let largest = &mut self.counters.link.largest_torque_step_nm;
+            *largest = largest.max(by_link.amax());
         }
         self.applied = Some(applied);
         let t_s = self.time_s();
         self.counters
             .cycle(state, self.rating.quality(), t_s.is_some());
         for text in self.krc.take_messages() {
-            self.counters.event(t_s, self.robot_time_s(), text);
+            let robot_t_s = self.robot_time_s();
+            self.counters.event(Event {
+                t_s,
+                robot_t_s,
+                text,
+            });
         }
 
         let residual = self

@@ -91,7 +91,7 @@ impl Passage {
     #[must_use]
     pub fn none(length: u64, cycle_s: f64) -> Self {
         Self {
-            old: Driving::by_springs(Impedance::none()),
+            old: Driving::by_springs(Impedance::NONE),
             rate: JointVector::zeros(),
             cycle_s,
             done: length,
@@ -224,7 +224,7 @@ mod tests {
     fn moving_targets_come_to_rest() {
         let mut passage = Passage::none(50, 0.002);
         passage.begin(
-            Driving::by_springs(Impedance::none()),
+            Driving::by_springs(Impedance::NONE),
             JointVector::repeat(0.5),
         );
         let steps: Vec<_> = (0..60).map(|_| passage.next()[0]).collect();

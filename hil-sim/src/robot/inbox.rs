@@ -3,8 +3,7 @@
 use fri::sequence::{Arrival, Receiver, Sender};
 use fri::{Error, Header};
 
-use super::counters::Counters;
-use super::figures::Rejected;
+use super::figures::{LinkFigures, Rejected};
 use super::krc::Refusal;
 use super::order::Order;
 
@@ -65,32 +64,32 @@ impl Inbox {
     }
 
     /// The cycle whose measurement `order` answers, if it may act.
-    pub fn place(&mut self, order: &Order, counters: &mut Counters) -> Result<u64, Answer> {
+    pub fn place(&mut self, order: &Order, link: &mut LinkFigures) -> Result<u64, Answer> {
         let sent = self.sent[usize::from(order.reflected) % REMEMBERED];
         let Some((_, cycle)) = sent.filter(|(counter, _)| *counter == order.reflected) else {
-            counters.rejected.reflection += 1;
+            link.rejected.reflection += 1;
             return Err(Answer::Rejected);
         };
         match self.receiver.receive(order.counter) {
             Arrival::Repeated => {
-                counters.repeated += 1;
+                link.repeated += 1;
                 return Err(Answer::Repeated);
             }
             Arrival::Old => {
-                counters.old += 1;
+                link.old += 1;
                 return Err(Answer::Old);
             }
             Arrival::First => (),
-            Arrival::Next { lost } => counters.lost += u64::from(lost),
+            Arrival::Next { lost } => link.lost += u64::from(lost),
         }
         match self.answered {
             Some(last) if cycle < last => {
-                counters.old += 1;
+                link.old += 1;
                 Err(Answer::Old)
             }
             Some(last) if cycle == last => {
                 // Cycle 0 sends again until it has an answer; several are no fault.
-                counters.repeated += u64::from(cycle > 0);
+                link.repeated += u64::from(cycle > 0);
                 Err(Answer::Repeated)
             }
             _ => Ok(cycle),

@@ -1,11 +1,13 @@
 //! The robot controller's logic: which state the link is in, which answers may
 //! act, and what the motors get. No clock, no datagrams, no plant.
 
-use controller_core::joint::{DOF, JointMatrix, JointVector};
-use fri::{InterfaceState, Quality};
+mod orders;
+
+use controller_core::joint::{JointMatrix, JointVector};
+use fri::{ControlScheme, InterfaceState, Quality};
 
 use super::driving::{Driving, Passage, Pipe};
-use super::options::{Krl, RobotOptions, Scheme, cycles};
+use super::options::{Krl, RobotOptions, cycles};
 use super::order::Order;
 use super::rating::Rating;
 use crate::plant::Impedance;
@@ -41,7 +43,7 @@ pub struct Krc {
     reach: JointVector<f64>,
     /// In command state; else in monitor state.
     commands: bool,
-    scheme: Scheme,
+    scheme: ControlScheme,
     /// Position commanded before FRI \[rad\].
     hold: JointVector<f64>,
     /// Position commanded in all \[rad\].
@@ -67,8 +69,6 @@ pub struct Krc {
     /// differs from the cycle before.
     arrived: JointVector<f64>,
     change: JointVector<f64>,
-    /// int\[1\] of the KRL program.
-    answer_int: i32,
     left: bool,
     fallbacks: u64,
     entries: u64,
@@ -103,10 +103,9 @@ impl Krc {
             jumping: false,
             good: 0,
             passage: Passage::none(cycles(options.fade_s, cycle_s), cycle_s),
-            last: Driving::by_springs(Impedance::none()),
+            last: Driving::by_springs(Impedance::NONE),
             arrived: JointVector::zeros(),
             change: JointVector::zeros(),
-            answer_int: 10,
             left: false,
             fallbacks: 0,
             entries: 0,
@@ -127,7 +126,7 @@ impl Krc {
 
     /// Control scheme.
     #[must_use]
-    pub fn scheme(&self) -> Scheme {
+    pub fn scheme(&self) -> ControlScheme {
         self.scheme
     }
 
@@ -141,7 +140,11 @@ impl Krc {
     /// int\[1\] of the KRL program: 10 after its start, 1 in command state, 0 after it.
     #[must_use]
     pub fn answer_int(&self) -> i32 {
-        self.answer_int
+        match (self.commands, self.entries) {
+            (true, _) => 1,
+            (false, 0) => 10,
+            (false, _) => 0,
+        }
     }
 
     /// How often command state was lost against the client's will.
@@ -180,87 +183,6 @@ impl Krc {
         self.order.as_ref()
     }
 
-    /// An answer of this cycle, newer than those before, with the arm at `q` \[rad\].
-    ///
-    /// # Errors
-    /// It is not used; in command state changed flags end that state.
-    pub fn accept(&mut self, order: &Order, q: &JointVector<f64>) -> Result<(), Refusal> {
-        let checked = if self.commands {
-            self.check(order, q)
-        } else {
-            Ok(())
-        };
-        self.refused = checked.err();
-        if checked.is_ok() {
-            self.take(order);
-        }
-        checked
-    }
-
-    fn check(&mut self, order: &Order, q: &JointVector<f64>) -> Result<(), Refusal> {
-        if order.flags != self.flags {
-            return Err(Refusal::Flags);
-        }
-        let Some(position) = &order.position else {
-            return Ok(());
-        };
-        // The last order was good for one cycle and every one bridged since.
-        let elapsed = f64::from(self.age + 1);
-        for joint in 0..DOF {
-            let (moved, allowed) = if self.follows(order, joint) {
-                // Half a unit of the last place of binary32 at 3 rad, twice.
-                let reach = self.reach[joint] * elapsed + 5e-7;
-                ((position[joint] - self.last_position(joint)).abs(), reach)
-            } else {
-                ((position[joint] - q[joint]).abs(), self.options.jump_rad)
-            };
-            if moved > allowed {
-                // A row of them is one event.
-                if !std::mem::replace(&mut self.jumping, true) {
-                    self.say(format!(
-                        "jntPos of joint {} jumps by {:.1} mrad; allowed: {:.1}; answer not used",
-                        joint + 1,
-                        moved * 1e3,
-                        allowed * 1e3
-                    ));
-                }
-                return Err(Refusal::Jump);
-            }
-        }
-        self.jumping = false;
-        Ok(())
-    }
-
-    /// Whether jntPos moves this joint.
-    fn follows(&self, order: &Order, joint: usize) -> bool {
-        self.scheme == Scheme::Position || self.stiffness(order)[joint] > 0.0
-    }
-
-    /// jntPos of the order that acts; where it gave none, the commanded position.
-    fn last_position(&self, joint: usize) -> f64 {
-        let given = self.order.as_ref().and_then(|order| order.position);
-        given.map_or(self.commanded[joint], |position| position[joint])
-    }
-
-    fn take(&mut self, order: &Order) {
-        if self.commands
-            && let Some(position) = order.position
-        {
-            let before = JointVector::from_fn(|i, _| self.last_position(i));
-            self.rate = (position - before) / f64::from(self.age + 1);
-            self.commanded = position;
-        }
-        if !self.commands && self.order.is_some_and(|last| last.flags != order.flags) {
-            // Flags have to be chosen before command state: wait anew.
-            if self.good > 0 {
-                self.tell_once("cmdFlags changed while waiting; choose them before command state");
-            }
-            self.good = 0;
-        }
-        self.order = Some(*order);
-        self.fresh = true;
-    }
-
     /// Ends a cycle: what the motors get in it besides the robot's own dynamics.
     /// `added` delays the added torque of orders by the dead time; it is told
     /// when what is under way is void.
@@ -286,11 +208,8 @@ impl Krc {
         let wanted = if self.commands {
             self.ordered(now, added)
         } else {
-            Driving::by_springs(self.springs(
-                now,
-                &JointVector::repeat(self.options.stiffness),
-                &JointVector::repeat(self.options.damping),
-            ))
+            let [stiffness, ratio] = self.own_springs();
+            Driving::by_springs(self.springs(now, &stiffness, &ratio))
         };
         // In monitor state nothing arrives: what fades then is the link's doing.
         self.change = if self.commands {
@@ -310,7 +229,7 @@ impl Krc {
     /// missing answers are borne.
     fn bridge(&mut self) {
         if self.age > 0
-            && self.scheme == Scheme::Position
+            && self.scheme == ControlScheme::Position
             && self.age <= self.options.rating.misses_max
         {
             self.commanded += self.rate;
@@ -342,7 +261,7 @@ impl Krc {
     /// come to rest; other joints are held where they are.
     fn stop(&mut self, now: &Now<'_>, reason: &str, fault: bool) {
         let stiffness = self.last.impedance.stiffness;
-        let follows = |i: usize| stiffness[i] > 0.0 && self.scheme == Scheme::Position;
+        let follows = |i: usize| stiffness[i] > 0.0 && self.scheme == ControlScheme::Position;
         let rate = JointVector::from_fn(|i, _| {
             let bound = self.reach[i];
             if follows(i) {
@@ -364,7 +283,6 @@ impl Krc {
         self.commanded = self.hold;
         self.rate = JointVector::zeros();
         self.good = 0;
-        self.answer_int = 0;
         self.told.clear();
     }
 
@@ -376,38 +294,32 @@ impl Krc {
         }
     }
 
-    /// What the order that acts asks for.
+    /// What the order that acts asks for; the robot's own value where it asks for none.
     fn ordered(&self, now: &Now<'_>, added: &mut Pipe) -> Driving {
-        let none = JointVector::zeros();
         let Some(order) = &self.order else {
-            return Driving::by_springs(Impedance::none());
+            return Driving::by_springs(Impedance::NONE);
         };
-        match self.scheme {
-            Scheme::Position => Driving {
-                torque: added.pass(&none),
-                impedance: self.springs(
-                    now,
-                    &JointVector::repeat(self.options.position_stiffness),
-                    &JointVector::repeat(1.0),
-                ),
-            },
-            Scheme::JointImpedance => Driving {
-                torque: added.pass(&order.torque.unwrap_or(none)),
-                impedance: self.springs(
-                    now,
-                    &self.stiffness(order),
-                    &order
-                        .damping
-                        .unwrap_or(JointVector::repeat(self.options.damping)),
-                ),
-            },
+        let none = JointVector::zeros();
+        let (torque, stiffness, ratio) = if self.scheme == ControlScheme::Position {
+            let stiffness = JointVector::repeat(self.options.position_stiffness);
+            (none, stiffness, JointVector::repeat(1.0))
+        } else {
+            let [stiffness, ratio] = self.own_springs();
+            (
+                order.torque.unwrap_or(none),
+                order.stiffness.unwrap_or(stiffness),
+                order.damping.unwrap_or(ratio),
+            )
+        };
+        Driving {
+            torque: added.pass(&torque),
+            impedance: self.springs(now, &stiffness, &ratio),
         }
     }
 
-    fn stiffness(&self, order: &Order) -> JointVector<f64> {
-        order
-            .stiffness
-            .unwrap_or(JointVector::repeat(self.options.stiffness))
+    /// Stiffness \[Nm/rad\] and damping ratio where no order says otherwise.
+    fn own_springs(&self) -> [JointVector<f64>; 2] {
+        [self.options.stiffness, self.options.damping].map(JointVector::repeat)
     }
 
     /// Springs K to the commanded position, which moves evenly during the cycle.
@@ -441,14 +353,11 @@ impl Krc {
             return;
         }
         self.good = 0;
-        match self.entry(&order, now) {
-            Err(message) => {
-                self.tell_once(&message);
-            }
+        match order.entry(&self.options, &self.hold, now.drives_on) {
+            Err(message) => self.tell_once(&message),
             Ok(scheme) => {
                 self.scheme = scheme;
                 self.commands = true;
-                self.answer_int = 1;
                 self.flags = order.flags;
                 self.rate = JointVector::zeros();
                 self.commanded = self.hold;
@@ -458,50 +367,6 @@ impl Krc {
                 self.say(format!("command state, cmdFlags {:#06x}", order.flags));
             }
         }
-    }
-
-    /// The checks before command state, in the client's terms.
-    fn entry(&self, order: &Order, now: &Now<'_>) -> Result<Scheme, String> {
-        let scheme = match self.options.krl {
-            Krl::Auto => self.options.scheme,
-            Krl::Handshake => Scheme::from_strategy(order.strategy)?,
-        };
-        if !now.drives_on {
-            return Err("drives are off".into());
-        }
-        match &order.position {
-            None if scheme == Scheme::Position => {
-                return Err("cmdFlags do not set jntPos (0x0001), which this scheme needs".into());
-            }
-            None => (),
-            Some(position) => {
-                for joint in 0..DOF {
-                    let off = (position[joint] - self.hold[joint]).abs();
-                    if off > self.options.entry_position_rad {
-                        return Err(format!(
-                            "jntPos of joint {} is {:.1} mrad from the commanded position; \
-                             allowed: {:.1}",
-                            joint + 1,
-                            off * 1e3,
-                            self.options.entry_position_rad * 1e3
-                        ));
-                    }
-                }
-            }
-        }
-        if let Some(torque) = &order.torque {
-            for joint in 0..DOF {
-                if torque[joint].abs() > self.options.entry_torque_nm {
-                    return Err(format!(
-                        "addJntTrq of joint {} is {:.2} Nm; allowed: {:.2}",
-                        joint + 1,
-                        torque[joint],
-                        self.options.entry_torque_nm
-                    ));
-                }
-            }
-        }
-        Ok(scheme)
     }
 
     /// Why command state does not begin, once per reason in a row.

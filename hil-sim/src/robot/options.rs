@@ -1,6 +1,7 @@
 //! How the robot controller behaves where the protocol leaves it open. Every
 //! number here is an assumption of this simulation, not a fact about a product.
 
+use cell::invalid::Invalid;
 use cell::names::Named;
 use fri::ControlScheme;
 
@@ -21,50 +22,37 @@ impl Named for Krl {
         &[("auto", Self::Auto), ("handshake", Self::Handshake)];
 }
 
-/// What an answer commands: of the control schemes those that this robot has.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scheme {
-    /// tau = k (q_cmd - q) - D dq + added torque + the robot's own dynamics.
-    #[default]
-    JointImpedance,
-    /// The arm follows q_cmd by stiff springs.
-    Position,
+/// The control schemes that this robot has:
+///
+/// - joint impedance: tau = k (q_cmd - q) - D dq + added torque + the robot's own dynamics;
+/// - position: the arm follows q_cmd by stiff springs.
+const SCHEMES: [(&str, ControlScheme); 2] = [
+    ("joint-impedance", ControlScheme::JointImpedance),
+    ("position", ControlScheme::Position),
+];
+
+/// The control scheme with this name.
+///
+/// # Errors
+/// The names of those that this robot has.
+pub fn scheme_named(name: &str) -> Result<ControlScheme, Invalid> {
+    let found = SCHEMES.iter().find(|(known, _)| *known == name);
+    found
+        .map(|&(_, scheme)| scheme)
+        .ok_or_else(|| Invalid::name("scheme", name, &SCHEMES.map(|(known, _)| known)))
 }
 
-impl Named for Scheme {
-    const THING: &'static str = "scheme";
-    const ALL: &'static [(&'static str, Self)] = &[
-        ("joint-impedance", Self::JointImpedance),
-        ("position", Self::Position),
-    ];
-}
-
-impl From<Scheme> for ControlScheme {
-    fn from(scheme: Scheme) -> Self {
-        match scheme {
-            Scheme::JointImpedance => Self::JointImpedance,
-            Scheme::Position => Self::Position,
-        }
-    }
-}
-
-impl Scheme {
-    /// The scheme of a strategy number as user data carry it.
-    ///
-    /// # Errors
-    /// One line, for a strategy that is not supported.
-    pub fn from_strategy(strategy: i32) -> Result<Self, String> {
-        match strategy {
-            10 => Ok(Self::Position),
-            30 => Ok(Self::JointImpedance),
-            20 => Err("strategy 20 (Cartesian impedance) is not supported; \
-                       allowed: 10 position, 30 joint impedance"
-                .into()),
-            other => Err(format!(
-                "strategy {other} is not supported; allowed: 10 position, 30 joint impedance"
-            )),
-        }
-    }
+/// The control scheme of a strategy number as user data carry it; the error is one line.
+pub(super) fn scheme_of_strategy(strategy: i32) -> Result<ControlScheme, String> {
+    let what = match strategy {
+        10 => return Ok(ControlScheme::Position),
+        30 => return Ok(ControlScheme::JointImpedance),
+        20 => " (Cartesian impedance)",
+        _ => "",
+    };
+    Err(format!(
+        "strategy {strategy}{what} is not supported; allowed: 10 position, 30 joint impedance"
+    ))
 }
 
 /// Stiffness of the position scheme \[Nm/rad\].
@@ -121,7 +109,7 @@ pub struct RobotOptions {
     /// Who decides on command state.
     pub krl: Krl,
     /// What answers command, unless the client chooses by handshake.
-    pub scheme: Scheme,
+    pub scheme: ControlScheme,
     /// What the robot adds to the commanded torque.
     pub adds: RobotAdds,
     /// How answers are rated.
@@ -155,7 +143,7 @@ impl Default for RobotOptions {
     fn default() -> Self {
         Self {
             krl: Krl::Auto,
-            scheme: Scheme::JointImpedance,
+            scheme: ControlScheme::JointImpedance,
             adds: RobotAdds::Gravity,
             rating: RatingOptions::default(),
             good_for_s: 0.2,

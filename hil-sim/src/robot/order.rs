@@ -1,8 +1,10 @@
-//! Datagrams on the robot's side: what an answer orders, and what a measurement
-//! is filled with.
+//! Datagrams on the robot's side: what an answer orders, whether command state may begin
+//! with it, and what a measurement is filled with.
 
 use controller_core::joint::{DOF, JointVector};
-use fri::{Command, CommandPacket, Error, Flags, UserData};
+use fri::{Command, CommandPacket, ControlScheme, Error, Flags, UserData};
+
+use super::options::{Krl, RobotOptions, scheme_of_strategy};
 
 /// Largest stiffness that counts \[Nm/rad\].
 pub const STIFFNESS_MAX: f64 = 2000.0;
@@ -31,6 +33,55 @@ pub struct Order {
     pub wants_command: bool,
     /// real\[0..7\]: by convention of this simulation the client's residual \[Nm\].
     pub residual: JointVector<f64>,
+}
+
+impl Order {
+    /// The checks before command state, when the robot holds `hold` \[rad\]: the scheme
+    /// that begins.
+    ///
+    /// # Errors
+    /// Why it does not begin, in the client's terms.
+    pub fn entry(
+        &self,
+        options: &RobotOptions,
+        hold: &JointVector<f64>,
+        drives_on: bool,
+    ) -> Result<ControlScheme, String> {
+        let scheme = match options.krl {
+            Krl::Auto => options.scheme,
+            Krl::Handshake => scheme_of_strategy(self.strategy)?,
+        };
+        if !drives_on {
+            return Err("drives are off".into());
+        }
+        if self.position.is_none() && scheme == ControlScheme::Position {
+            return Err("cmdFlags do not set jntPos (0x0001), which this scheme needs".into());
+        }
+        for joint in 0..DOF {
+            let off = self
+                .position
+                .map_or(0.0, |q| (q[joint] - hold[joint]).abs());
+            if off > options.entry_position_rad {
+                return Err(format!(
+                    "jntPos of joint {} is {:.1} mrad from the commanded position; allowed: {:.1}",
+                    joint + 1,
+                    off * 1e3,
+                    options.entry_position_rad * 1e3
+                ));
+            }
+        }
+        for joint in 0..DOF {
+            let torque = self.torque.map_or(0.0, |torque| torque[joint]);
+            if torque.abs() > options.entry_torque_nm {
+                return Err(format!(
+                    "addJntTrq of joint {} is {torque:.2} Nm; allowed: {:.2}",
+                    joint + 1,
+                    options.entry_torque_nm
+                ));
+            }
+        }
+        Ok(scheme)
+    }
 }
 
 /// Reads an answer.

@@ -42,7 +42,7 @@ impl Robot {
             },
             drives: Drives {
                 power: if self.drives_on() { POWER } else { 0 },
-                control: self.krc.scheme().into(),
+                control: self.krc.scheme(),
                 error: 0,
                 warning: 0,
                 temperature: [0.0; DOF],

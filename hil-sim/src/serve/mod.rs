@@ -31,7 +31,7 @@ impl Service {
         &self,
         robot: &mut Robot,
         operator: &mut Operator,
-        client: &mut impl Transport,
+        client: &mut dyn Transport,
         sink: impl FnMut(&Sample) -> io::Result<()>,
     ) -> io::Result<End> {
         if self.lockstep {
@@ -45,7 +45,7 @@ impl Service {
         &self,
         robot: &mut Robot,
         operator: &mut Operator,
-        client: &mut impl Transport,
+        client: &mut dyn Transport,
         mut sink: impl FnMut(&Sample) -> io::Result<()>,
     ) -> io::Result<End> {
         let cycle_s = robot.setup().scenario.cycle_s();

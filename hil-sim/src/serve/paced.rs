@@ -18,7 +18,7 @@ pub(super) fn run(
     service: &Service,
     robot: &mut Robot,
     operator: &mut Operator,
-    client: &mut impl Transport,
+    client: &mut dyn Transport,
     mut sink: impl FnMut(&Sample) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
@@ -43,7 +43,7 @@ pub(super) fn run(
     }
     let setup = robot.setup();
     let (cycle_s, seed) = (setup.scenario.cycle_s(), setup.seed);
-    let mut link = Link {
+    let mut schedule = Schedule {
         to_client: Channel::new(Direction::ToClient, &service.faults, cycle_s, seed),
         to_robot: Channel::new(Direction::ToRobot, &service.faults, cycle_s, seed),
         zero: Clock::now(),
@@ -55,7 +55,7 @@ pub(super) fn run(
         if let Some(end) = service.hopeless(robot, begun) {
             return Ok(end);
         }
-        link.cycle(robot, client)?;
+        schedule.cycle(robot, client)?;
         if let Some(instant) = robot.advance() {
             sink(&instant)?;
         }
@@ -68,7 +68,8 @@ pub(super) fn run(
     Ok(End::Finished)
 }
 
-struct Link {
+/// Both directions of the link, on the wall clock.
+struct Schedule {
     to_client: Channel,
     to_robot: Channel,
     /// Wall clock at the start of cycle `first`, as if the robot had never slept.
@@ -77,7 +78,7 @@ struct Link {
     cycle_s: f64,
 }
 
-impl Link {
+impl Schedule {
     fn now_s(&self) -> f64 {
         self.zero.elapsed().as_secs_f64()
     }
@@ -87,7 +88,7 @@ impl Link {
     }
 
     /// Sends the measurement and takes answers until the cycle is over.
-    fn cycle(&mut self, robot: &mut Robot, client: &mut impl Transport) -> io::Result<()> {
+    fn cycle(&mut self, robot: &mut Robot, client: &mut dyn Transport) -> io::Result<()> {
         let start = (robot.cycle() - self.first) as f64 * self.cycle_s;
         let asleep_s = self.now_s() - start;
         if asleep_s > self.cycle_s {

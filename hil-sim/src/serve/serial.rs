@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use bridge::framing::{self, DATAGRAM_MAX, Deframer, Fed};
 use serial2::SerialPort;
 
-use super::transport::{POLL, Transport};
+use super::transport::{POLL, Transport, silence};
 use cell::invalid::Invalid;
 
 /// Bits per second; a pseudo terminal does not care.
@@ -93,13 +93,6 @@ impl Serial {
             }
         }
     }
-}
-
-fn silence(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-    )
 }
 
 impl Transport for Serial {

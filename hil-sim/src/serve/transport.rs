@@ -1,6 +1,6 @@
 //! What carries the datagrams to the client and back.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::time::{Duration, Instant};
 
 use crate::link::{Expect, Peer};
@@ -43,21 +43,15 @@ pub trait Transport {
     fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>>;
 }
 
-impl Transport for Box<dyn Transport> {
-    fn send(&mut self, datagram: &[u8]) -> io::Result<()> {
-        (**self).send(datagram)
-    }
-
-    fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
-        (**self).receive(deadline)
-    }
-
-    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
-        (**self).receive_on_time(deadline)
-    }
+/// Whether nothing came or went, but nothing is wrong.
+pub(super) fn silence(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
 }
 
-impl<T: Transport> Peer for T {
+impl<T: Transport + ?Sized> Peer for T {
     fn exchange(
         &mut self,
         measurement: &[u8],

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-use super::transport::{NOTHING, POLL, Transport};
+use super::transport::{NOTHING, POLL, Transport, silence};
 use cell::invalid::Invalid;
 
 /// More than any datagram of the protocol.
@@ -93,11 +93,4 @@ impl Transport for Udp {
 
 fn nobody(error: &io::Error) -> bool {
     error.kind() == ErrorKind::ConnectionRefused
-}
-
-fn silence(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-    )
 }

@@ -2,7 +2,7 @@
 
 use cell::names::PlantKind::{self, Ideal, Realistic};
 use controller_core::joint::JointVector;
-use hil_sim::robot::{Robot, RobotAdds, RobotOptions, Scheme, State};
+use hil_sim::robot::{Robot, RobotAdds, RobotOptions, State};
 
 use crate::client::{Loop, robot, setup};
 
@@ -72,7 +72,7 @@ fn command_state_begins_and_ends_without_a_torque_step() {
 fn the_position_scheme_follows_a_ramp() {
     for plant in [Ideal, Realistic] {
         let options = RobotOptions {
-            scheme: Scheme::Position,
+            scheme: fri::ControlScheme::Position,
             ..RobotOptions::default()
         };
         let mut link = Loop::new(Robot::new(setup(plant, options)));

@@ -125,6 +125,12 @@ impl Style {
         Self { colour, stroke }
     }
 
+    /// A line among others: every other one is broken.
+    #[must_use]
+    pub fn alternating(colour: usize) -> Self {
+        Self::new(colour, [Stroke::Solid, Stroke::Dashed][colour % 2])
+    }
+
     /// Classes of the line.
     #[must_use]
     pub fn class(self) -> String {

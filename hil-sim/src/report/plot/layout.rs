@@ -118,12 +118,7 @@ fn draw_panel(
     let size = [right - left, panel.height];
     let y = Axis::of(panel, [bottom, top]);
     for (from, to) in visible_bands(chart, frame) {
-        svg.rect(
-            "band",
-            [from, top],
-            [(to - from).max(0.6), panel.height],
-            0.0,
-        );
+        svg.rect("band", [from, top], [(to - from).max(0.6), panel.height]);
     }
     let across = x.ticks(80.0);
     let up = y.ticks(TICK_STEP);

@@ -23,37 +23,28 @@ pub struct Axis {
 impl Axis {
     /// An even axis.
     pub fn linear([low, high]: [f64; 2], [from, to]: [f64; 2]) -> Self {
-        let log = false;
         Self {
             low,
             high,
             from,
             to,
-            log,
+            log: false,
         }
     }
 
-    /// The vertical axis of a panel between the pixels `from` (bottom) and `to`.
-    pub fn of(panel: &Panel, [from, to]: [f64; 2]) -> Self {
-        let [low, high] = vertical(panel);
-        let log = panel.is_log();
+    /// The vertical axis of a panel between two pixels, the lower one first.
+    pub fn of(panel: &Panel, pixels: [f64; 2]) -> Self {
         Self {
-            low,
-            high,
-            from,
-            to,
-            log,
+            log: panel.is_log(),
+            ..Self::linear(vertical(panel), pixels)
         }
     }
 
     /// The pixel of a value; NaN stays NaN.
     pub fn pixel(&self, value: f64) -> f64 {
         let share = if self.log {
-            let value = if value.is_nan() {
-                value
-            } else {
-                value.max(self.low)
-            };
+            // As `max`, but for NaN.
+            let value = if value < self.low { self.low } else { value };
             (value / self.low).log10() / (self.high / self.low).log10()
         } else {
             (value - self.low) / (self.high - self.low)
@@ -144,23 +135,13 @@ fn vertical(panel: &Panel) -> [f64; 2] {
     };
     if high - low <= 1e-9 * largest || high <= low {
         let air = if largest > 0.0 { 0.2 * largest } else { 1.0 };
-        let low = if zero.is_some() && low >= 0.0 {
-            0.0
-        } else {
-            low - air
-        };
-        return [low, high + air];
+        let from_zero = zero.is_some() && low >= 0.0;
+        return [if from_zero { 0.0 } else { low - air }, high + air];
     }
     let pad = 0.06 * (high - low);
-    let low = if zero.is_some() && low == 0.0 {
-        0.0
-    } else {
-        low - pad
-    };
-    let high = if zero.is_some() && high == 0.0 {
-        0.0
-    } else {
-        high + pad
-    };
-    [low, high]
+    let is_zero = |edge: f64| zero.is_some() && edge == 0.0;
+    [
+        if is_zero(low) { low } else { low - pad },
+        if is_zero(high) { high } else { high + pad },
+    ]
 }

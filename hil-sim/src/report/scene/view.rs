@@ -20,14 +20,10 @@ impl View {
         corner: [f64; 2],
         size: [f64; 2],
         points: impl Iterator<Item = &'a [f64; 2]>,
-        include: &'a [[f64; 2]],
     ) -> Self {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
-        for point in points
-            .chain(include)
-            .filter(|p| p[0].is_finite() && p[1].is_finite())
-        {
+        for point in points.filter(|p| p[0].is_finite() && p[1].is_finite()) {
             for k in 0..2 {
                 low[k] = low[k].min(point[k].clamp(-1e9, 1e9));
                 high[k] = high[k].max(point[k].clamp(-1e9, 1e9));
@@ -61,7 +57,7 @@ impl View {
     }
 
     /// Grid, tick labels and titles of both axes.
-    pub fn axes(&self, svg: &mut Svg, labels: [&str; 2]) {
+    pub fn axes(&self, svg: &mut Svg, labels: &[String; 2]) {
         let [left, top] = self.corner;
         let [right, bottom] = self.far_corner();
         let range = |k: usize| {
@@ -88,8 +84,8 @@ impl View {
             "m",
             [0.5 * (left + right), bottom + 34.0],
             Anchor::Middle,
-            labels[0],
+            &labels[0],
         );
-        svg.text_upwards("m", [left - LEFT + 15.0, 0.5 * (top + bottom)], labels[1]);
+        svg.text_upwards("m", [left - LEFT + 15.0, 0.5 * (top + bottom)], &labels[1]);
     }
 }

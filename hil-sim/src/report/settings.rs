@@ -1,0 +1,125 @@
+//! The table of what a run was set to.
+
+use super::Run;
+use super::svg::escape;
+use super::tables::Table;
+use super::ticks::plain;
+use cell::names::Named;
+use cell::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+
+/// Gains as they acted, references, cycle.
+pub fn settings(run: &Run<'_>) -> String {
+    let (scenario, summary) = (run.scenario, run.summary);
+    let caption = if run.by_client() {
+        "Arm and motion that the client is held against; its gains are its own."
+    } else {
+        "Gains as they acted, with the chosen null-space stiffness."
+    };
+    let mut table = Table::new(caption, ["Setting", "Value"]);
+    let mut row = |name: &str, value: &str| table.row(&escape(name), [escape(value)]);
+    row("Arm", &scenario.robot);
+    row(
+        "Plant, seed",
+        &format!("{}, {}", summary.plant, summary.seed),
+    );
+    row("Controller", summary.controller);
+    let [duration, cycle] = [summary.duration_s, summary.cycle_ms].map(plain);
+    row(
+        "Duration, cycle",
+        &format!("{duration} s, {cycle} ms, {} cycles run", summary.cycles),
+    );
+    let options = &run.choices.options;
+    let measurement = run.choices.measurement.name();
+    row(
+        "Measurement, dead cycles",
+        &format!("{measurement}, {}", options.dead_cycles),
+    );
+    if options.stiction {
+        row("Plant option", "stiction");
+    }
+    if options.elasticity {
+        row("Plant option", "elastic joints");
+    }
+    let start = if run.by_client() {
+        "Start posture [deg]"
+    } else {
+        "Start posture, also q_d [deg]"
+    };
+    row(start, &list(&scenario.start_deg));
+    for (number, level) in (1..).zip(&scenario.levels) {
+        row(
+            &format!("Level {number}: task"),
+            &format!("{}: {}", level.label(), reference(level)),
+        );
+        if !run.by_client() {
+            row(
+                &format!("Level {number}: K_p [1/s\u{b2}], K_d [1/s]"),
+                &format!("{}; {}", gain(&level.stiffness), gain(&level.damping)),
+            );
+        }
+    }
+    if run.by_client() {
+        return table.finish();
+    }
+    let null = &scenario.null_space;
+    let factor = run.choices.null_stiffness.factor();
+    let stiffness = null.stiffness.map(|k| factor * k);
+    row("Null space: K_q [Nm/rad]", &list(&stiffness));
+    let damping = if run.choices.has_inertia_damping() {
+        format!("c M with c = {} /s", plain(null.damping_rate))
+    } else {
+        list(&null.damping)
+    };
+    row("Null space: D [Nms/rad]", &damping);
+    let posture = match null.posture {
+        PostureSpec::Constant => "constant",
+        PostureSpec::IntegralCoupled => "integral, coupled",
+        PostureSpec::IntegralUncoupled => "integral, uncoupled",
+    };
+    row("Null space: posture q_d", posture);
+    if summary.controller.starts_with("acceleration-level") {
+        row("Null space: rate gain [1/s]", &plain(null.rate_gain));
+    }
+    row("Observer: K_I [1/s]", &plain(scenario.observer.gain));
+    table.finish()
+}
+
+fn list(values: &[f64]) -> String {
+    // Products of settings and factors carry the last bits of rounding.
+    let short = |v: &f64| plain((v * 1e9).round() / 1e9);
+    values.iter().map(short).collect::<Vec<_>>().join(", ")
+}
+
+fn gain(gain: &AxisGain) -> String {
+    match gain {
+        AxisGain::Uniform(value) => plain(*value),
+        AxisGain::PerAxis(values) => list(values),
+    }
+}
+
+fn reference(level: &LevelSpec) -> String {
+    let (kind, turn) = match &level.reference {
+        ReferenceSpec::Hold => return "held".to_string(),
+        ReferenceSpec::Move { by_m, duration_s } => {
+            return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
+        }
+        ReferenceSpec::Swing(swing) => {
+            return format!(
+                "swing about ({}), {} deg reached in {} s, {} s a swing",
+                list(&swing.axis),
+                plain(swing.angle_deg),
+                plain(swing.growth_s),
+                plain(swing.period_s)
+            );
+        }
+        ReferenceSpec::Circle(turn) => ("circle", turn),
+        ReferenceSpec::Spiral(turn) => ("spiral", turn),
+    };
+    format!(
+        "{kind} in {}, radius {} m reached in {} s, {} s a turn",
+        format!("{:?}", turn.plane).to_uppercase(),
+        plain(turn.radius_m),
+        plain(turn.growth_s),
+        plain(turn.period_s)
+    )
+}
