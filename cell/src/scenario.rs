@@ -5,7 +5,6 @@
 mod contact;
 mod hand;
 mod level;
-mod locate;
 mod metric;
 mod point;
 mod push;
@@ -20,11 +19,12 @@ use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
 use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS};
 use controller_core::{ControllerConfig, Reference, Target, TaskSet};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
 use crate::invalid::{Invalid, in_range, positive};
 use crate::names::{MeasurementKind, Named, PlantKind};
 use crate::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S, GAIN_MAX};
+use crate::reader;
 
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
@@ -56,7 +56,6 @@ pub struct Scenario {
     /// Control cycle \[ms\].
     pub cycle_ms: f64,
     /// Posture at the start \[deg\], at rest; also q_d of the null space.
-    #[serde(deserialize_with = "joints")]
     pub start_deg: [f64; DOF],
     /// Task levels, highest priority first.
     #[serde(rename = "level")]
@@ -81,10 +80,8 @@ pub struct Scenario {
 #[serde(deny_unknown_fields)]
 pub struct NullSpaceSpec {
     /// K_q \[Nm/rad\], diagonal.
-    #[serde(deserialize_with = "joints")]
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\], diagonal.
-    #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
     /// c \[1/s\] of the inertia-shaped damping D = c M that takes the place of
     /// `damping` where the loop has dead time.
@@ -193,12 +190,7 @@ impl Scenario {
     /// # Errors
     /// The first line or key that cannot be used.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
-        let scenario: Self = locate::parse(text)?;
-        scenario.validate().map_err(|error| {
-            let line = locate::line_of(text, error.path());
-            error.within(format_args!("line {line}"))
-        })?;
-        Ok(scenario)
+        reader::toml(text, Self::validate)
     }
 
     /// Checks every number, name and shape that the file format leaves open.
@@ -350,17 +342,6 @@ impl Scenario {
         }
         reference
     }
-}
-
-/// Reads one number per joint, and says how many there are if not seven.
-pub fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
-    let values = Vec::<f64>::deserialize(deserializer)?;
-    let count = values.len();
-    values.try_into().map_err(|_| {
-        serde::de::Error::custom(format_args!(
-            "{count} values; allowed: {DOF}, joints 1 to {DOF}"
-        ))
-    })
 }
 
 impl NullSpaceSpec {

@@ -8,12 +8,13 @@ use serde::Deserialize;
 use crate::invalid::{Invalid, in_range, positive};
 use crate::ranges::DURATION_MAX_S;
 
-/// Motion of a level's point about where it is at the start.
+/// Motion of a level's point about where it is at the start; in files a table that says its
+/// kind.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ReferenceSpec {
     /// Rest.
-    Hold,
+    Hold {},
     /// Straight move, then rest.
     Move {
         /// Displacement \[m\].
@@ -76,7 +77,7 @@ impl ReferenceSpec {
     /// What is out of range.
     pub fn validate(&self) -> Result<(), Invalid> {
         match self {
-            Self::Hold => Ok(()),
+            Self::Hold {} => Ok(()),
             Self::Move { by_m, duration_s } => {
                 positive("duration_s", *duration_s, DURATION_MAX_S)?;
                 by_m.iter()
@@ -101,7 +102,7 @@ impl ReferenceSpec {
     #[must_use]
     pub fn is_rotation(&self) -> Option<bool> {
         match self {
-            Self::Hold => None,
+            Self::Hold {} => None,
             Self::Swing(_) => Some(true),
             Self::Move { .. } | Self::Circle(_) | Self::Spiral(_) => Some(false),
         }
@@ -123,7 +124,7 @@ impl ReferenceSpec {
     /// The motion of a point; none for others and for rest.
     fn trajectory(&self) -> Option<Trajectory<f64>> {
         match self {
-            Self::Hold | Self::Swing(_) => None,
+            Self::Hold {} | Self::Swing(_) => None,
             Self::Move { by_m, duration_s } => Some(Trajectory::Move {
                 by: (*by_m).into(),
                 duration_s: *duration_s,
