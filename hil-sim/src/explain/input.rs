@@ -2,16 +2,23 @@
 
 use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::joint::{DOF, Vector3};
-use controller_core::ranges::MAX_ROWS;
+use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::ControllerKind;
-use cell::invalid::{Invalid, in_range, positive};
+use cell::invalid::Invalid;
 use cell::names::Named;
+use cell::ranges::{LEVELS, QUATERNION_NORM, ROWS, Range};
 use cell::reader;
 use cell::scenario::{PointSpec, TaskSpec};
+
+/// K_I \[1/s\].
+const OBSERVER_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);
+
+/// Interval of the observer \[s\].
+const INTERVAL_S: Range<f64> = Range::above(0.0, 10.0);
 
 /// One control cycle. SI units, base-plate frame.
 #[derive(Clone, Debug, Deserialize)]
@@ -115,13 +122,13 @@ impl Input {
         }
         for (joint, (&q, link)) in (1..).zip(self.q.iter().zip(&LWR_IV.links)) {
             let limit = link.position_limit;
-            in_range(format_args!("q of joint {joint}"), q, -limit, limit)?;
+            Range::new(-limit, limit).check(format_args!("q of joint {joint}"), q)?;
         }
         if let Some(name) = &self.controller {
             ControllerKind::from_name(name)?;
         }
         if self.levels.is_empty() {
-            return Err(Invalid::new("levels", "none", "1 to 7 levels"));
+            return Err(Invalid::new("levels", "none", LEVELS));
         }
         let mut rows = 0;
         for (index, level) in self.levels.iter().enumerate() {
@@ -129,12 +136,9 @@ impl Input {
                 .validate()
                 .map_err(|error| error.in_list("levels", index))?;
         }
-        if rows > MAX_ROWS {
-            return Err(Invalid::new(
-                "levels",
-                format_args!("{rows} rows together"),
-                "1 to 7",
-            ));
+        if !ROWS.contains(rows) {
+            let given = format!("{rows} rows together");
+            return Err(Invalid::new("levels", given, ROWS));
         }
         if let Some(observer) = &self.observer {
             observer
@@ -167,9 +171,9 @@ impl Input {
 impl ObserverStep {
     fn validate(&self) -> Result<(), Invalid> {
         for gain in self.gain {
-            in_range("gain", gain, 0.0, 1e9)?;
+            OBSERVER_GAIN.check("gain", gain)?;
         }
-        positive("h", self.h, 10.0).map(drop)
+        INTERVAL_S.check("h", self.h).map(drop)
     }
 }
 
@@ -208,7 +212,7 @@ impl Level {
         }
         if self.task == TaskSpec::Orientation {
             let norm = self.x.iter().map(|x| x * x).sum::<f64>().sqrt();
-            in_range("norm of x", norm, 0.5, 2.0)?;
+            QUATERNION_NORM.check("norm of x", norm)?;
         }
         Ok(rows)
     }
@@ -245,6 +249,23 @@ impl Level {
                     dw: vector(&self.ddx),
                 },
             ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_document_says_the_ranges() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/explain.md");
+        let text = std::fs::read_to_string(path).expect("the document");
+        for row in [
+            format!("| `gain` | 7 | 1/s | K_I, {OBSERVER_GAIN} |"),
+            format!("| `h` | 1 | s | interval, {INTERVAL_S} |"),
+        ] {
+            assert!(text.contains(&row), "docs/explain.md has to contain {row}");
         }
     }
 }
