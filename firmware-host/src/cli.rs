@@ -56,20 +56,20 @@ enum Command {
     /// Answer the robot until the motion is over
     Run(Box<RunOptions>),
     /// Can this PC hold the cycle? Scheduling, jitter, latency, with advice
+    #[command(allow_negative_numbers = true)]
     Doctor {
-        #[arg(
-            long, default_value_t = 2.0, value_parser = number(CYCLE_MS),
-            allow_negative_numbers = true, help = format!("Cycle in ms, {CYCLE_MS}"),
-        )]
+        #[arg(long, default_value_t = 2.0, value_parser = number(CYCLE_MS),
+            help = format!("Cycle in ms, {CYCLE_MS}"))]
         cycle_ms: f64,
         /// Processor for the control thread, from 0
-        #[arg(long, value_parser = processor, allow_negative_numbers = true)]
+        #[arg(long, value_parser = processor)]
         cpu: Option<usize>,
     },
 }
 
 /// Options of `run`.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 struct RunOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     #[arg(long, default_value = "two-level")]
@@ -80,15 +80,11 @@ struct RunOptions {
     /// Answer this address only [default: the first that sends a measurement]
     #[arg(long, value_parser = peer, value_name = "ADDR:PORT")]
     peer: Option<SocketAddr>,
-    #[arg(
-        long, value_parser = number(DURATION_S), allow_negative_numbers = true,
-        help = format!("Length of the motion in s, {DURATION_S} [default: the scenario's]"),
-    )]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length of the motion in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    #[arg(
-        long, default_value_t = 0, value_parser = whole(DEAD_CYCLES), allow_negative_numbers = true,
-        help = format!("Cycles between the arrival of a torque and its effect, {DEAD_CYCLES}"),
-    )]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the arrival of a torque and its effect, {DEAD_CYCLES}"))]
     dead_cycles: u8,
     /// What the robot adds to the torque: gravity, gravity-coriolis
     #[arg(long, default_value = "gravity")]
@@ -96,35 +92,26 @@ struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    #[arg(
-        long, value_parser = number(START_DEG), allow_negative_numbers = true, value_name = "DEG",
-        help = format!(
-            "Refuse a start posture that is farther from the scenario's than this, in deg, \
-             {START_DEG}"
-        ),
-    )]
+    #[arg(long, value_parser = number(START_DEG), value_name = "DEG",
+        help = format!("Refuse a start posture that is farther from the scenario's than this, \
+            in deg, {START_DEG}"))]
     require_start: Option<f64>,
     /// Take references from UDP datagrams at this address instead of the scenario: text, for
     /// each level in priority order x y z, velocity, acceleration (9 numbers; m, s), or of an
     /// orientation w x y z, angular velocity, angular acceleration (10 numbers; rad, s)
     #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
-    #[arg(
-        long, default_value_t = 100.0, value_parser = number(TIMEOUT_MS),
-        allow_negative_numbers = true,
-        help = format!("Hold when no reference has come for so many ms, {TIMEOUT_MS}"),
-    )]
+    #[arg(long, default_value_t = 100.0, value_parser = number(TIMEOUT_MS),
+        help = format!("Hold when no reference has come for so many ms, {TIMEOUT_MS}"))]
     reference_timeout_ms: f64,
     /// Never move the robot: check its model, show the torques as they would be
     #[arg(long)]
     dry: bool,
-    #[arg(
-        long, default_value_t = 60.0, value_parser = number(WAIT_S), allow_negative_numbers = true,
-        help = format!("Seconds to wait for the robot, {WAIT_S}"),
-    )]
+    #[arg(long, default_value_t = 60.0, value_parser = number(WAIT_S),
+        help = format!("Seconds to wait for the robot, {WAIT_S}"))]
     wait: f64,
     /// Processor for the control thread, from 0
-    #[arg(long, value_parser = processor, allow_negative_numbers = true)]
+    #[arg(long, value_parser = processor)]
     cpu: Option<usize>,
     /// Write a summary as JSON
     #[arg(long, value_name = "FILE")]

@@ -61,18 +61,6 @@ impl Value {
 }
 
 impl Node {
-    fn visit<'de, V: Visitor<'de>>(&'de self, visitor: V) -> Result<V::Value, Invalid> {
-        match &self.value {
-            Value::Other(_) => visitor.visit_unit(),
-            Value::Switch(on) => visitor.visit_bool(*on),
-            Value::Whole(number) => visitor.visit_i64(*number),
-            Value::Number(number) => visitor.visit_f64(*number),
-            Value::Text(text) => visitor.visit_borrowed_str(text),
-            Value::List(entries) => visitor.visit_seq(Entries(entries.iter().peekable())),
-            Value::Table(entries) => visitor.visit_map(Entries(entries.iter().peekable())),
-        }
-    }
-
     /// The word, which must be a known one.
     fn choice(&self, known: &'static [&'static str]) -> Result<&str, Invalid> {
         match &self.value {
@@ -127,7 +115,7 @@ macro_rules! only {
     ($($method:ident $pattern:pat => $allowed:expr;)+) => {$(
         fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Invalid> {
             match self.value {
-                $pattern => self.visit(visitor),
+                $pattern => self.deserialize_any(visitor),
                 _ => Err(self.value.refused($allowed)),
             }
         }
@@ -138,7 +126,15 @@ impl<'de> Deserializer<'de> for &'de Node {
     type Error = Invalid;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Invalid> {
-        self.visit(visitor)
+        match &self.value {
+            Value::Other(_) => visitor.visit_unit(),
+            Value::Switch(on) => visitor.visit_bool(*on),
+            Value::Whole(number) => visitor.visit_i64(*number),
+            Value::Number(number) => visitor.visit_f64(*number),
+            Value::Text(text) => visitor.visit_borrowed_str(text),
+            Value::List(entries) => visitor.visit_seq(Entries(entries.iter().peekable())),
+            Value::Table(entries) => visitor.visit_map(Entries(entries.iter().peekable())),
+        }
     }
 
     only! {

@@ -5,7 +5,8 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
-use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
 
 use crate::invalid::{Invalid, Segment};
 
@@ -45,11 +46,13 @@ impl Node {
                 .within(format_args!("'{}'", around(text, at)))
                 .within(format_args!("line {}", line(text, at)))
         })?;
-        Ok(Self::toml(None, 0, DeValue::Table(document.into_inner())))
+        let document = Spanned::new(0..0, DeValue::Table(document.into_inner()));
+        Ok(Self::toml(None, document))
     }
 
-    fn toml(step: Option<Segment>, at: usize, value: DeValue<'_>) -> Self {
-        let value = match value {
+    fn toml(step: Option<Segment>, value: Spanned<DeValue<'_>>) -> Self {
+        let at = value.span().start;
+        let value = match value.into_inner() {
             DeValue::String(text) => Value::Text(text.into_owned()),
             // What does not fit is beyond every range.
             DeValue::Integer(digits) => i64::from_str_radix(digits.as_str(), digits.radix())
@@ -57,22 +60,16 @@ impl Node {
             DeValue::Float(digits) => Value::Number(digits.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(on) => Value::Switch(on),
             DeValue::Datetime(_) => Value::Other("date"),
-            DeValue::Array(list) => Value::List(
-                (list.into_iter().enumerate())
-                    .map(|(index, entry)| {
-                        let at = entry.span().start;
-                        Self::toml(Some(Segment::Index(index)), at, entry.into_inner())
-                    })
-                    .collect(),
-            ),
-            DeValue::Table(table) => Value::Table(
-                (table.into_iter())
-                    .map(|(key, entry)| {
-                        let key = Segment::Key(key.into_inner().into_owned());
-                        Self::toml(Some(key), entry.span().start, entry.into_inner())
-                    })
-                    .collect(),
-            ),
+            DeValue::Array(list) => {
+                let list = list.into_iter().enumerate();
+                let entry = |(index, value)| Self::toml(Some(Segment::Index(index)), value);
+                Value::List(list.map(entry).collect())
+            }
+            DeValue::Table(table) => {
+                let key = |key: Spanned<DeString<'_>>| Segment::Key(key.into_inner().into_owned());
+                let entry = |(name, value)| Self::toml(Some(key(name)), value);
+                Value::Table(table.into_iter().map(entry).collect())
+            }
         };
         Self { step, at, value }
     }
@@ -100,18 +97,18 @@ impl Node {
         // It is a part of the text.
         let at = own.as_ptr().addr() - text.as_ptr().addr();
         let value = match own.as_bytes() {
-            [b'{', ..] => Value::Table(
-                (serde_json::from_str::<Entries>(own)?.0.into_iter())
-                    .map(|(key, entry)| Self::json(text, Some(Segment::Key(key)), entry))
-                    .collect::<Result<_, _>>()?,
-            ),
-            [b'[', ..] => Value::List(
-                (serde_json::from_str::<Vec<&RawValue>>(own)?
+            [b'{', ..] => {
+                let Entries(table) = serde_json::from_str(own)?;
+                let entry = |(key, value)| Self::json(text, Some(Segment::Key(key)), value);
+                Value::Table(table.into_iter().map(entry).collect::<Result<_, _>>()?)
+            }
+            [b'[', ..] => {
+                let list = serde_json::from_str::<Vec<&RawValue>>(own)?
                     .into_iter()
-                    .enumerate())
-                .map(|(index, entry)| Self::json(text, Some(Segment::Index(index)), entry))
-                .collect::<Result<_, _>>()?,
-            ),
+                    .enumerate();
+                let entry = |(index, value)| Self::json(text, Some(Segment::Index(index)), value);
+                Value::List(list.map(entry).collect::<Result<_, _>>()?)
+            }
             [b'"', ..] => Value::Text(serde_json::from_str(own)?),
             [b't' | b'f', ..] => Value::Switch(serde_json::from_str(own)?),
             [b'n', ..] => Value::Other("null"),

@@ -24,6 +24,7 @@ use cell::terminal::{print, show, tell};
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct RunOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     scenario: String,
@@ -42,13 +43,9 @@ pub struct RunOptions {
     /// How the controller sees the arm: direct, or fri: through the datagrams of the robot link, speeds estimated
     #[arg(long, default_value = "direct")]
     measurement: String,
-    #[arg(
-        long, default_value_t = 0, value_parser = whole(DEAD_CYCLES), allow_negative_numbers = true,
-        help = format!(
-            "Cycles between the torque and its effect, {DEAD_CYCLES}; above 0 the null-space \
-             damping is the scenario's inertia-shaped one"
-        ),
-    )]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the torque and its effect, {DEAD_CYCLES}; above 0 the \
+            null-space damping is the scenario's inertia-shaped one"))]
     dead_cycles: u8,
     /// True stiction instead of smooth friction (realistic plant): on, off
     #[arg(long, default_value = "off")]
@@ -57,17 +54,13 @@ pub struct RunOptions {
     #[arg(long, default_value = "off")]
     elasticity: String,
     /// Seed of mismatch and noise (realistic plant), whole numbers from 0
-    #[arg(long, default_value_t = 1, value_parser = whole(SEED), allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(SEED))]
     seed: u64,
-    #[arg(
-        long, value_parser = number(DURATION_S), allow_negative_numbers = true,
-        help = format!("Length in s, {DURATION_S} [default: the scenario's]"),
-    )]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    #[arg(
-        long, value_parser = number(CYCLE_MS), allow_negative_numbers = true,
-        help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"),
-    )]
+    #[arg(long, value_parser = number(CYCLE_MS),
+        help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]

@@ -50,6 +50,7 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 
 /// Options of `serve`.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: start, contacts, what is judged
     #[arg(long, default_value = "two-level")]
@@ -61,36 +62,28 @@ pub struct ServeOptions {
     #[arg(long, default_value = "on")]
     contacts: String,
     /// Seed of mismatch, noise and faults, whole numbers from 0
-    #[arg(long, default_value_t = 1, value_parser = whole(SEED), allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(SEED))]
     seed: u64,
     /// Where the client is, ADDRESS:PORT [default: 127.0.0.1:49938]
     #[arg(long, value_parser = peer)]
     remote: Option<SocketAddr>,
     /// Short for --remote 127.0.0.1:PORT
-    #[arg(long, value_parser = whole(PORTS), allow_negative_numbers = true)]
+    #[arg(long, value_parser = whole(PORTS))]
     port: Option<u16>,
     /// A serial line instead: device or pseudo terminal
     #[arg(long, value_name = "PATH")]
     serial: Option<PathBuf>,
-    #[arg(
-        long, default_value_t = 0, value_parser = whole(OWN_PORTS), allow_negative_numbers = true,
-        help = format!("Own port, {PORTS}; 0: any"),
-    )]
+    #[arg(long, default_value_t = 0, value_parser = whole(OWN_PORTS),
+        help = format!("Own port, {PORTS}; 0: any"))]
     local_port: u16,
-    #[arg(
-        long, value_parser = number(FRI_CYCLE_MS), allow_negative_numbers = true,
-        help = format!("Cycle in ms, {FRI_CYCLE_MS} [default: the scenario's]"),
-    )]
+    #[arg(long, value_parser = number(FRI_CYCLE_MS),
+        help = format!("Cycle in ms, {FRI_CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
-    #[arg(
-        long, value_parser = number(DURATION_S), allow_negative_numbers = true,
-        help = format!("Length in s, {DURATION_S} [default: the scenario's]"),
-    )]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    #[arg(
-        long, default_value_t = 0, value_parser = whole(DEAD_CYCLES), allow_negative_numbers = true,
-        help = format!("Cycles between the added torque and its effect, {DEAD_CYCLES}"),
-    )]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the added torque and its effect, {DEAD_CYCLES}"))]
     dead_cycles: u8,
     /// Virtual time: as fast as both sides can, the same bytes every time
     #[arg(long)]
@@ -104,24 +97,17 @@ pub struct ServeOptions {
     /// What the robot adds to the torque itself: gravity, gravity-coriolis
     #[arg(long, default_value = "gravity")]
     robot_adds: String,
-    #[arg(
-        long, value_name = "DIR:KIND[@FROM-TO]",
-        help = format!(
-            "What goes wrong on the link: DIR to-client, to-robot, both; KIND drop=P duplicate=P \
-             reorder=P corrupt=P burst=PxN (P {SHARE}, N {BURST} in a row) delay=MS jitter=MS \
-             ({DELAY_MS}) freeze; FROM-TO in s of the scenario. May be given more than once"
-        ),
-    )]
+    #[arg(long, value_name = "DIR:KIND[@FROM-TO]",
+        help = format!("What goes wrong on the link: DIR to-client, to-robot, both; KIND drop=P \
+            duplicate=P reorder=P corrupt=P burst=PxN (P {SHARE}, N {BURST} in a row) delay=MS \
+            jitter=MS ({DELAY_MS}) freeze; FROM-TO in s of the scenario. May be given more than once"))]
     fault: Vec<String>,
     /// Scenario time during which the drives are off, in s
     #[arg(long, value_name = "FROM-TO")]
     drives_off: Option<String>,
-    #[arg(
-        long, default_value = "60", value_parser = number(WAIT_S), allow_negative_numbers = true,
-        help = format!(
-            "Time to wait for the first answer, and then for command state, in s, {WAIT_S}"
-        ),
-    )]
+    #[arg(long, default_value = "60", value_parser = number(WAIT_S),
+        help = format!("Time to wait for the first answer, and then for command state, in s, \
+            {WAIT_S}"))]
     wait: f64,
     /// Output folder [default: out/serve-SCENARIO]
     #[arg(long)]
@@ -135,56 +121,39 @@ pub struct ServeOptions {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Thresholds")]
 struct Thresholds {
-    #[arg(
-        long, default_value = "0.99", value_parser = number(SHARE), allow_negative_numbers = true,
-        help = format!("Least share of answers in time for quality perfect, {SHARE}"),
-    )]
+    #[arg(long, default_value = "0.99", value_parser = number(SHARE),
+        help = format!("Least share of answers in time for quality perfect, {SHARE}"))]
     perfect_rate: f64,
     /// The same for quality ok, not above that of perfect
-    #[arg(long, default_value = "0.95", value_parser = number(SHARE), allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.95", value_parser = number(SHARE))]
     ok_rate: f64,
     /// The same for quality bad, not above that of ok; below it: unacceptable
-    #[arg(long, default_value = "0.8", value_parser = number(SHARE), allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.8", value_parser = number(SHARE))]
     bad_rate: f64,
-    #[arg(
-        long, default_value = "0.25", value_parser = number(JITTER), allow_negative_numbers = true,
-        help = format!("Largest jitter for quality perfect, in cycles, {JITTER}"),
-    )]
+    #[arg(long, default_value = "0.25", value_parser = number(JITTER),
+        help = format!("Largest jitter for quality perfect, in cycles, {JITTER}"))]
     perfect_jitter: f64,
-    #[arg(
-        long, default_value = "10", value_parser = whole(MISSES), allow_negative_numbers = true,
-        help = format!("Missing answers in a row that are borne, whole numbers {MISSES}"),
-    )]
+    #[arg(long, default_value = "10", value_parser = whole(MISSES),
+        help = format!("Missing answers in a row that are borne, whole numbers {MISSES}"))]
     misses: u32,
-    #[arg(
-        long, default_value = "0.2", value_parser = number(GOOD_FOR_S), allow_negative_numbers = true,
-        help = format!("Time with quality ok before command state, in s, {GOOD_FOR_S}"),
-    )]
+    #[arg(long, default_value = "0.2", value_parser = number(GOOD_FOR_S),
+        help = format!("Time with quality ok before command state, in s, {GOOD_FOR_S}"))]
     good_for: f64,
-    #[arg(
-        long, default_value = "5", value_parser = number(ENTRY_MRAD), allow_negative_numbers = true,
-        help = format!("Largest distance of jntPos from the commanded position on entry, in mrad, {ENTRY_MRAD}"),
-    )]
+    #[arg(long, default_value = "5", value_parser = number(ENTRY_MRAD),
+        help = format!("Largest distance of jntPos from the commanded position on entry, in mrad, \
+            {ENTRY_MRAD}"))]
     entry_mrad: f64,
-    #[arg(
-        long, default_value = "1", value_parser = number(ENTRY_NM), allow_negative_numbers = true,
-        help = format!("Largest added torque on entry, in Nm, {ENTRY_NM}"),
-    )]
+    #[arg(long, default_value = "1", value_parser = number(ENTRY_NM),
+        help = format!("Largest added torque on entry, in Nm, {ENTRY_NM}"))]
     entry_nm: f64,
-    #[arg(
-        long, default_value = "1.1", value_parser = number(SPEED_FACTOR), allow_negative_numbers = true,
-        help = format!("Speed limit of jntPos over the data sheet's, {SPEED_FACTOR}"),
-    )]
+    #[arg(long, default_value = "1.1", value_parser = number(SPEED_FACTOR),
+        help = format!("Speed limit of jntPos over the data sheet's, {SPEED_FACTOR}"))]
     speed_factor: f64,
-    #[arg(
-        long, default_value = "1000", value_parser = number(KRL_STIFFNESS), allow_negative_numbers = true,
-        help = format!("Stiffness of the robot program, in Nm/rad, {KRL_STIFFNESS}"),
-    )]
+    #[arg(long, default_value = "1000", value_parser = number(KRL_STIFFNESS),
+        help = format!("Stiffness of the robot program, in Nm/rad, {KRL_STIFFNESS}"))]
     krl_stiffness: f64,
-    #[arg(
-        long, default_value = "0.7", value_parser = number(SHARE), allow_negative_numbers = true,
-        help = format!("Damping ratio of the robot program, {SHARE}"),
-    )]
+    #[arg(long, default_value = "0.7", value_parser = number(SHARE),
+        help = format!("Damping ratio of the robot program, {SHARE}"))]
     krl_damping: f64,
 }
 
