@@ -7,7 +7,10 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Invalid {
     text: String,
-    path: Vec<Segment>,
+    /// The way to the table that holds the value.
+    place: Vec<Segment>,
+    /// The value's key there, where there is one.
+    key: Option<String>,
 }
 
 /// A step on the way to a value in a file.
@@ -28,11 +31,9 @@ impl Invalid {
         allowed: impl fmt::Display,
     ) -> Self {
         let thing = thing.to_string();
-        let key = thing.split(' ').next().unwrap_or("").to_string();
-        let error = Self::line(format!("{thing}: {value}; allowed: {allowed}"));
         Self {
-            path: vec![Segment::Key(key)],
-            ..error
+            key: thing.split(' ').next().map(String::from),
+            ..Self::line(format_args!("{thing}: {value}; allowed: {allowed}"))
         }
     }
 
@@ -46,63 +47,87 @@ impl Invalid {
             .join(" ");
         Self {
             text,
-            path: Vec::new(),
+            place: Vec::new(),
+            key: None,
         }
     }
 
     /// An unknown name: says which are known, the nearest one first.
     pub fn name(thing: &str, given: &str, known: &[&str]) -> Self {
-        let all = known.join(", ");
-        let text = match nearest(given, known) {
-            Some(name) => {
-                format!("{thing}: unknown '{given}', did you mean '{name}'? allowed: {all}")
-            }
-            None => format!("{thing}: unknown '{given}'; allowed: {all}"),
-        };
+        let unknown = Self::unknown(given, known);
         Self {
-            path: vec![Segment::Key(thing.to_string())],
-            ..Self::line(text)
+            key: Some(thing.to_string()),
+            ..Self::line(format_args!("{thing}: {unknown}"))
         }
     }
 
-    /// The same error, found in `place`.
+    /// The same of a key in a file.
+    #[must_use]
+    pub fn key(given: &str, known: &[&str]) -> Self {
+        Self {
+            key: Some(given.to_string()),
+            ..Self::name("key", given, known)
+        }
+    }
+
+    /// The same where the place already says what it is.
+    #[must_use]
+    pub fn unknown(given: &str, known: &[&str]) -> Self {
+        let nearest = match nearest(given, known) {
+            Some(name) => format!(", did you mean '{name}'?"),
+            None => ";".to_string(),
+        };
+        let all = match known {
+            [] => "none".to_string(),
+            known => known.join(", "),
+        };
+        Self::line(format_args!("unknown '{given}'{nearest} allowed: {all}"))
+    }
+
+    /// The same error, found in `place`, which is not a part of the file.
     #[must_use]
     pub fn within(self, place: impl fmt::Display) -> Self {
-        let path = self.path;
-        Self {
-            path,
-            ..Self::line(format!("{place}: {}", self.text))
-        }
+        Self::line(format_args!("{place}: {self}"))
     }
 
-    /// The same error, found in entry `index` (from 0) of the list `key` of a file.
+    /// The same error, found one step further inside a file.
     #[must_use]
-    pub fn in_list(self, key: &str, index: usize) -> Self {
-        let mut error = self.within(format_args!("{key} {}", index + 1));
-        error
-            .path
-            .splice(0..0, [Segment::Key(key.to_string()), Segment::Index(index)]);
-        error
+    pub fn inside(mut self, step: Segment) -> Self {
+        self.place.insert(0, step);
+        self
     }
 
     /// The same error, found in the table `key` of a file.
     #[must_use]
     pub fn in_table(self, key: &str) -> Self {
-        let mut error = self.within(key);
-        error.path.insert(0, Segment::Key(key.to_string()));
-        error
+        self.inside(Segment::Key(key.to_string()))
+    }
+
+    /// The same error, found in entry `index` (from 0) of the list `key` of a file.
+    #[must_use]
+    pub fn in_list(self, key: &str, index: usize) -> Self {
+        self.inside(Segment::Index(index)).in_table(key)
     }
 
     /// The way to the value in its file; empty if unknown.
     #[must_use]
-    pub fn path(&self) -> &[Segment] {
-        &self.path
+    pub fn path(&self) -> Vec<Segment> {
+        let key = self.key.clone().map(Segment::Key);
+        self.place.iter().cloned().chain(key).collect()
     }
 }
 
 impl fmt::Display for Invalid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
+        for (number, step) in self.place.iter().enumerate() {
+            match step {
+                Segment::Key(key) if number == 0 => f.write_str(key)?,
+                Segment::Key(key) => write!(f, ": {key}")?,
+                Segment::Index(index) => write!(f, " {}", index + 1)?,
+            }
+        }
+        let gap = if self.place.is_empty() { "" } else { ": " };
+        write!(f, "{gap}{}", self.text)
     }
 }
 
@@ -119,45 +144,6 @@ fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
         .filter(|(similarity, name)| *similarity > 0.7 || slip(name))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, name)| name)
-}
-
-/// `value` if it is a finite number within `min..=max`.
-///
-/// # Errors
-/// Names `thing`, the value and the range.
-pub fn in_range(thing: impl fmt::Display, value: f64, min: f64, max: f64) -> Result<f64, Invalid> {
-    if value >= min && value <= max {
-        Ok(value)
-    } else {
-        let allowed = format_args!("{min} to {max}");
-        Err(Invalid::new(thing, short(value), allowed))
-    }
-}
-
-/// `value` if it is finite and above zero, up to `max`.
-///
-/// # Errors
-/// Names `thing`, the value and the range.
-pub fn positive(thing: impl fmt::Display, value: f64, max: f64) -> Result<f64, Invalid> {
-    if value > 0.0 && value <= max {
-        Ok(value)
-    } else {
-        Err(Invalid::new(
-            thing,
-            short(value),
-            format_args!("above 0, at most {max}"),
-        ))
-    }
-}
-
-/// A number as a person would write it: without hundreds of zeros.
-fn short(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && size.is_finite() && !(1e-6..1e15).contains(&size) {
-        format!("{value:e}")
-    } else {
-        value.to_string()
-    }
 }
 
 #[cfg(test)]
@@ -186,22 +172,6 @@ mod tests {
             Invalid::name("controller", "xyz", &known)
                 .to_string()
                 .contains("; allowed")
-        );
-    }
-
-    #[test]
-    fn ranges_refuse_what_is_not_a_number() {
-        assert!(in_range("x", f64::NAN, 0.0, 1.0).is_err());
-        assert!(positive("x", f64::INFINITY, 1e9).is_err());
-        assert_eq!(
-            positive("--duration", -1.0, 3600.0)
-                .unwrap_err()
-                .to_string(),
-            "--duration: -1; allowed: above 0, at most 3600"
-        );
-        assert_eq!(
-            in_range("x", 1e300, 0.0, 1.0).unwrap_err().to_string(),
-            "x: 1e300; allowed: 0 to 1"
         );
     }
 }

@@ -2,13 +2,13 @@
 //! controller's. A cell is a robot with its job; here it is data. Nothing is simulated.
 //!
 //! Bottom-up: [`invalid`], errors for people; [`terminal`], what is printed;
-//! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of options and usage errors;
-//! [`scenario`], an experiment as a file.
+//! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of
+//! options and usage errors; [`reader`], files; [`scenario`], an experiment as a file.
 
 pub mod arguments;
 pub mod invalid;
 pub mod names;
 pub mod ranges;
-pub mod reworded;
+pub mod reader;
 pub mod scenario;
 pub mod terminal;

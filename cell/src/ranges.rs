@@ -1,13 +1,167 @@
 //! What files and options may ask for, declared once for validation, help and messages.
 //! The core's own ranges are in [`controller_core::ranges`].
 
-use controller_core::ranges::CYCLE_RANGE_S;
+use std::fmt;
+use std::str::FromStr;
 
-/// Longest experiment, and latest time of anything in it \[s\].
-pub const DURATION_MAX_S: f64 = 3600.0;
+use controller_core::joint::DOF;
+use controller_core::ranges::{
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS, QUATERNION_NORMS,
+};
 
-/// Shortest and longest cycle \[ms\].
-pub const CYCLE_RANGE_MS: [f64; 2] = [CYCLE_RANGE_S[0] * 1e3, CYCLE_RANGE_S[1] * 1e3];
+use crate::invalid::Invalid;
+
+/// Numbers from one to another, as text "0.1 to 20" or "above 0, at most 3600".
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range<T> {
+    /// The least number, or the one that all are above.
+    pub min: T,
+    /// The largest number.
+    pub max: T,
+    above: bool,
+}
+
+/// What ranges are of.
+pub trait Number: Copy + PartialOrd + fmt::Display + fmt::LowerExp + FromStr {}
+
+impl<T: Copy + PartialOrd + fmt::Display + fmt::LowerExp + FromStr> Number for T {}
+
+impl<T> Range<T> {
+    /// Both ends included.
+    pub const fn new(min: T, max: T) -> Self {
+        let above = false;
+        Self { min, max, above }
+    }
+
+    /// All above `min`.
+    pub const fn above(min: T, max: T) -> Self {
+        let above = true;
+        Self { min, max, above }
+    }
+}
+
+impl<T: Number> Range<T> {
+    /// Whether `value` is one of the numbers; NaN is not.
+    pub fn contains(&self, value: T) -> bool {
+        let high_enough = value > self.min || (value == self.min && !self.above);
+        high_enough && value <= self.max
+    }
+
+    /// `value` if it is one of the numbers.
+    ///
+    /// # Errors
+    /// Names `thing`, the value and the range.
+    pub fn check(&self, thing: impl fmt::Display, value: T) -> Result<T, Invalid> {
+        if self.contains(value) {
+            return Ok(value);
+        }
+        // Not with hundreds of zeros.
+        let (full, brief) = (value.to_string(), format!("{value:e}"));
+        let shown = if full.len() > 20 { brief } else { full };
+        Err(Invalid::new(thing, shown, self))
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Range<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { min, max, above } = self;
+        if *above {
+            write!(f, "above {min}, at most {max}")
+        } else {
+            write!(f, "{min} to {max}")
+        }
+    }
+}
+
+const DURATION_MAX_S: f64 = 3600.0;
 
 /// Largest gain a file may ask for; far beyond any use, far below overflow.
-pub const GAIN_MAX: f64 = 1e6;
+const GAIN_MAX: f64 = 1e6;
+
+/// Length of an experiment, of a move, of a push by hand \[s\].
+pub const DURATION_S: Range<f64> = Range::above(0.0, DURATION_MAX_S);
+
+/// Start and end of a contact \[s\].
+pub const TIME_S: Range<f64> = Range::new(0.0, DURATION_MAX_S);
+
+/// Control cycle \[ms\].
+pub const CYCLE_MS: Range<f64> = Range::new(CYCLE_RANGE_S[0] * 1e3, CYCLE_RANGE_S[1] * 1e3);
+
+/// Cycles between a torque and its effect.
+pub const DEAD_CYCLES: Range<u8> = Range::new(0, DEAD_CYCLES_MAX);
+
+/// Seed of everything that is drawn.
+pub const SEED: Range<u64> = Range::new(0, u64::MAX);
+
+/// Time that a program waits for the other \[s\].
+pub const WAIT_S: Range<f64> = Range::above(0.0, 1e6);
+
+/// Number of task levels.
+pub const LEVELS: Range<usize> = Range::new(1, MAX_LEVELS);
+
+/// Number of rows of all levels together.
+pub const ROWS: Range<usize> = Range::new(1, MAX_ROWS);
+
+/// Number of a link.
+pub const LINK: Range<usize> = Range::new(1, DOF);
+
+/// A coordinate of a point in its link's frame, or of a move \[m\].
+pub const OFFSET_M: Range<f64> = Range::new(-2.0, 2.0);
+
+/// Gains that act on tasks and joints, and of the observer; of K_p \[1/s2\], K_d \[1/s\],
+/// K_q \[Nm/rad\], D \[Nms/rad\], c and K_I \[1/s\].
+pub const GAIN: Range<f64> = Range::above(0.0, GAIN_MAX);
+
+/// K of (14) \[1/s\].
+pub const RATE_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);
+
+/// Radius of a circle \[m\].
+pub const RADIUS_M: Range<f64> = Range::new(0.0, 2.0);
+
+/// Period of a motion, and time in which it grows \[s\].
+pub const PERIOD_S: Range<f64> = Range::new(0.05, DURATION_MAX_S);
+
+/// Length of an axis, which is normalised.
+pub const AXIS_LENGTH: Range<f64> = Range::new(1e-3, 1e3);
+
+/// Largest angle of a swing \[deg\].
+pub const SWING_DEG: Range<f64> = Range::new(-350.0, 350.0);
+
+/// A coordinate of a scripted force \[N\].
+pub const FORCE_N: Range<f64> = Range::new(-1e4, 1e4);
+
+/// Stiffness of a hand \[N/m\].
+pub const HAND_STIFFNESS_N_M: Range<f64> = Range::above(0.0, 1e5);
+
+/// Damping of a hand \[Ns/m\].
+pub const HAND_DAMPING_NS_M: Range<f64> = Range::new(0.0, 1e4);
+
+/// Travel of a hand \[m\].
+pub const HAND_TRAVEL_M: Range<f64> = Range::new(-1.0, 1.0);
+
+/// Norm of a quaternion, which is normalised.
+pub const QUATERNION_NORM: Range<f64> = Range::new(QUATERNION_NORMS[0], QUATERNION_NORMS[1]);
+
+/// Acceptance limit \[mm\], \[mrad\].
+pub const LIMIT: Range<f64> = Range::above(0.0, 1e9);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_refuse_what_is_not_a_number() {
+        assert!(!SWING_DEG.contains(f64::NAN));
+        assert!(!DURATION_S.contains(f64::INFINITY) && !DURATION_S.contains(0.0));
+        assert!(TIME_S.contains(0.0) && TIME_S.contains(3600.0));
+        for (value, shown) in [(-1.0, "-1"), (1e300, "1e300"), (f64::NAN, "NaN")] {
+            let error = DURATION_S.check("--duration", value).expect_err(shown);
+            assert_eq!(
+                error.to_string(),
+                format!("--duration: {shown}; allowed: above 0, at most 3600")
+            );
+        }
+        let error = DEAD_CYCLES.check("dead_cycles", 9).expect_err("9");
+        assert_eq!(error.to_string(), "dead_cycles: 9; allowed: 0 to 8");
+    }
+}

@@ -5,7 +5,6 @@
 mod contact;
 mod hand;
 mod level;
-mod locate;
 mod metric;
 mod point;
 mod push;
@@ -18,13 +17,15 @@ use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS};
 use controller_core::{ControllerConfig, Reference, Target, TaskSet};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 
-use crate::invalid::{Invalid, in_range, positive};
+use crate::invalid::Invalid;
 use crate::names::{MeasurementKind, Named, PlantKind};
-use crate::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S, GAIN_MAX};
+use crate::ranges::{
+    CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, RATE_GAIN, ROWS, Range,
+};
+use crate::reader;
 
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
@@ -56,7 +57,6 @@ pub struct Scenario {
     /// Control cycle \[ms\].
     pub cycle_ms: f64,
     /// Posture at the start \[deg\], at rest; also q_d of the null space.
-    #[serde(deserialize_with = "joints")]
     pub start_deg: [f64; DOF],
     /// Task levels, highest priority first.
     #[serde(rename = "level")]
@@ -81,10 +81,8 @@ pub struct Scenario {
 #[serde(deny_unknown_fields)]
 pub struct NullSpaceSpec {
     /// K_q \[Nm/rad\], diagonal.
-    #[serde(deserialize_with = "joints")]
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\], diagonal.
-    #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
     /// c \[1/s\] of the inertia-shaped damping D = c M that takes the place of
     /// `damping` where the loop has dead time.
@@ -193,12 +191,7 @@ impl Scenario {
     /// # Errors
     /// The first line or key that cannot be used.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
-        let scenario: Self = locate::parse(text)?;
-        scenario.validate().map_err(|error| {
-            let line = locate::line_of(text, error.path());
-            error.within(format_args!("line {line}"))
-        })?;
-        Ok(scenario)
+        reader::toml(text, Self::validate)
     }
 
     /// Checks every number, name and shape that the file format leaves open.
@@ -217,25 +210,18 @@ impl Scenario {
         if self.robot != LWR_IV.name {
             return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
         }
-        positive("duration_s", self.duration_s, DURATION_MAX_S)?;
-        let [min, max] = CYCLE_RANGE_MS;
-        in_range("cycle_ms", self.cycle_ms, min, max)?;
+        DURATION_S.check("duration_s", self.duration_s)?;
+        CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
         for (joint, (&angle, link)) in (1..).zip(self.start_deg.iter().zip(&LWR_IV.links)) {
             // Back from radians to the number of the data sheet.
             let limit = (link.position_limit.to_degrees() * 1e9).round() / 1e9;
-            in_range(
-                format_args!("start_deg of joint {joint}"),
-                angle,
-                -limit,
-                limit,
-            )?;
+            let thing = format_args!("start_deg of joint {joint}");
+            Range::new(-limit, limit).check(thing, angle)?;
         }
-        if self.levels.is_empty() || self.levels.len() > MAX_LEVELS {
-            return Err(Invalid::new(
-                "level",
-                format_args!("{} levels", self.levels.len()),
-                "1 to 7",
-            ));
+        let levels = self.levels.len();
+        if !LEVELS.contains(levels) {
+            let given = format!("{levels} levels");
+            return Err(Invalid::new("level", given, LEVELS));
         }
         for (number, level) in self.levels.iter().enumerate() {
             level
@@ -243,17 +229,14 @@ impl Scenario {
                 .map_err(|error| error.in_list("level", number))?;
         }
         let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
-        if rows > MAX_ROWS {
-            return Err(Invalid::new(
-                "level",
-                format_args!("{rows} rows together"),
-                "1 to 7",
-            ));
+        if !ROWS.contains(rows) {
+            let given = format!("{rows} rows together");
+            return Err(Invalid::new("level", given, ROWS));
         }
         self.null_space
             .validate()
             .map_err(|error| error.in_table("null_space"))?;
-        positive("gain", self.observer.gain, GAIN_MAX)
+        GAIN.check("gain", self.observer.gain)
             .map_err(|error| error.in_table("observer"))?;
         for (number, push) in self.pushes.iter().enumerate() {
             push.validate()
@@ -268,15 +251,10 @@ impl Scenario {
             PlantKind::from_name(&limit.plant).map_err(place)?;
             MeasurementKind::from_name(&limit.measurement).map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
-            if limit.dead_cycles > usize::from(DEAD_CYCLES_MAX) {
-                let allowed = format_args!("0 to {DEAD_CYCLES_MAX}");
-                return Err(place(Invalid::new(
-                    "dead_cycles",
-                    limit.dead_cycles,
-                    allowed,
-                )));
-            }
-            positive("below", limit.below, 1e9).map_err(place)?;
+            Range::new(0, DEAD_CYCLES.max.into())
+                .check("dead_cycles", limit.dead_cycles)
+                .map_err(place)?;
+            LIMIT.check("below", limit.below).map_err(place)?;
         }
         Ok(())
     }
@@ -352,29 +330,14 @@ impl Scenario {
     }
 }
 
-/// Reads one number per joint, and says how many there are if not seven.
-pub fn joints<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; DOF], D::Error> {
-    let values = Vec::<f64>::deserialize(deserializer)?;
-    let count = values.len();
-    values.try_into().map_err(|_| {
-        serde::de::Error::custom(format_args!(
-            "{count} values; allowed: {DOF}, joints 1 to {DOF}"
-        ))
-    })
-}
-
 impl NullSpaceSpec {
     fn validate(&self) -> Result<(), Invalid> {
         for (joint, (&stiffness, &damping)) in (1..).zip(self.stiffness.iter().zip(&self.damping)) {
-            positive(
-                format_args!("stiffness of joint {joint}"),
-                stiffness,
-                GAIN_MAX,
-            )?;
-            positive(format_args!("damping of joint {joint}"), damping, GAIN_MAX)?;
+            GAIN.check(format_args!("stiffness of joint {joint}"), stiffness)?;
+            GAIN.check(format_args!("damping of joint {joint}"), damping)?;
         }
-        positive("damping_rate", self.damping_rate, GAIN_MAX)?;
-        in_range("rate_gain", self.rate_gain, 0.0, GAIN_MAX).map(drop)
+        GAIN.check("damping_rate", self.damping_rate)?;
+        RATE_GAIN.check("rate_gain", self.rate_gain).map(drop)
     }
 }
 

@@ -12,10 +12,10 @@ use std::time::Duration;
 use bridge::guide::ReferenceSource;
 use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
 use cell::arguments::usage;
-use cell::arguments::values::{address, dead_cycles, number, peer, processor};
-use cell::invalid::{Invalid, in_range, positive};
+use cell::arguments::values::{address, number, peer, processor, whole};
+use cell::invalid::Invalid;
 use cell::names::{Named, NullStiffness};
-use cell::ranges::DURATION_MAX_S;
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, WAIT_S};
 use cell::scenario::{Scenario, ScenarioSource};
 use cell::terminal::{print, tell};
 use clap::{Args, Parser, Subcommand};
@@ -28,6 +28,12 @@ use crate::recorder::{self, Recorder};
 use crate::run::{Endpoint, converse};
 use crate::stream::Stream;
 use crate::summary::Summary;
+
+/// How far the start posture may be required to be from the scenario's \[deg\].
+const START_DEG: Range<f64> = Range::above(0.0, 360.0);
+
+/// How long references may stay away \[ms\].
+const TIMEOUT_MS: Range<f64> = Range::above(0.0, 10_000.0);
 
 /// Cycles kept for the case of a fault: 2 s at 2 ms.
 const FLIGHT: usize = 1000;
@@ -50,18 +56,20 @@ enum Command {
     /// Answer the robot until the motion is over
     Run(Box<RunOptions>),
     /// Can this PC hold the cycle? Scheduling, jitter, latency, with advice
+    #[command(allow_negative_numbers = true)]
     Doctor {
-        /// Cycle in ms, 0.1 to 20
-        #[arg(long, default_value_t = 2.0, value_parser = number, allow_negative_numbers = true)]
+        #[arg(long, default_value_t = 2.0, value_parser = number(CYCLE_MS),
+            help = format!("Cycle in ms, {CYCLE_MS}"))]
         cycle_ms: f64,
         /// Processor for the control thread, from 0
-        #[arg(long, value_parser = processor, allow_negative_numbers = true)]
+        #[arg(long, value_parser = processor)]
         cpu: Option<usize>,
     },
 }
 
 /// Options of `run`.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 struct RunOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     #[arg(long, default_value = "two-level")]
@@ -72,11 +80,11 @@ struct RunOptions {
     /// Answer this address only [default: the first that sends a measurement]
     #[arg(long, value_parser = peer, value_name = "ADDR:PORT")]
     peer: Option<SocketAddr>,
-    /// Length of the motion in s, above 0, at most 3600 [default: the scenario's]
-    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length of the motion in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    /// Cycles between the arrival of a torque and its effect, 0 to 8
-    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the arrival of a torque and its effect, {DEAD_CYCLES}"))]
     dead_cycles: u8,
     /// What the robot adds to the torque: gravity, gravity-coriolis
     #[arg(long, default_value = "gravity")]
@@ -84,26 +92,26 @@ struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    /// Refuse a start posture that is farther from the scenario's than this, in deg, above 0,
-    /// at most 360
-    #[arg(long, value_parser = number, allow_negative_numbers = true, value_name = "DEG")]
+    #[arg(long, value_parser = number(START_DEG), value_name = "DEG",
+        help = format!("Refuse a start posture that is farther from the scenario's than this, \
+            in deg, {START_DEG}"))]
     require_start: Option<f64>,
     /// Take references from UDP datagrams at this address instead of the scenario: text, for
     /// each level in priority order x y z, velocity, acceleration (9 numbers; m, s), or of an
     /// orientation w x y z, angular velocity, angular acceleration (10 numbers; rad, s)
     #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
-    /// Hold when no reference has come for so many ms, above 0, at most 10000
-    #[arg(long, default_value_t = 100.0, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 100.0, value_parser = number(TIMEOUT_MS),
+        help = format!("Hold when no reference has come for so many ms, {TIMEOUT_MS}"))]
     reference_timeout_ms: f64,
     /// Never move the robot: check its model, show the torques as they would be
     #[arg(long)]
     dry: bool,
-    /// Seconds to wait for the robot, above 0
-    #[arg(long, default_value_t = 60.0, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 60.0, value_parser = number(WAIT_S),
+        help = format!("Seconds to wait for the robot, {WAIT_S}"))]
     wait: f64,
     /// Processor for the control thread, from 0
-    #[arg(long, value_parser = processor, allow_negative_numbers = true)]
+    #[arg(long, value_parser = processor)]
     cpu: Option<usize>,
     /// Write a summary as JSON
     #[arg(long, value_name = "FILE")]
@@ -137,7 +145,6 @@ pub fn main() -> ExitCode {
 }
 
 fn examine(cycle_ms: f64, cpu: Option<usize>) -> Result<u8, Invalid> {
-    let cycle_ms = in_range("--cycle-ms", cycle_ms, 0.1, 20.0)?;
     let findings = doctor::examine(cycle_ms / 1e3, cpu)
         .map_err(|error| Invalid::line(error).within("loopback"))?;
     print(findings.report())?;
@@ -170,8 +177,8 @@ impl RunOptions {
     fn run(&self) -> Result<u8, Invalid> {
         let scenario = Scenario::find(&self.scenario)?;
         let config = self.config(&scenario)?;
-        let required = self.required_start(&scenario)?;
-        let wait = Duration::from_secs_f64(positive("--wait", self.wait, 1e6)?);
+        let required = self.required_start(&scenario);
+        let wait = Duration::from_secs_f64(self.wait);
         let tasks = config.controller.tasks;
         let mut source = self.source(&scenario, &tasks)?;
         let socket = UdpSocket::bind(self.listen).map_err(|error| {
@@ -310,10 +317,7 @@ impl RunOptions {
     }
 
     fn config(&self, scenario: &Scenario) -> Result<SessionConfig, Invalid> {
-        let duration_s = match self.duration {
-            Some(duration) => positive("--duration", duration, DURATION_MAX_S)?,
-            None => scenario.duration_s,
-        };
+        let duration_s = self.duration.unwrap_or(scenario.duration_s);
         let mut config = scenario.session_config(self.dead_cycles, duration_s)?;
         let factor = NullStiffness::from_name(&self.null_stiffness)?.factor();
         config.controller.null_space = config.controller.null_space.stiffened(factor);
@@ -333,11 +337,11 @@ impl RunOptions {
     }
 
     fn source(&self, scenario: &Scenario, tasks: &TaskSet) -> Result<Source, Invalid> {
-        let timeout = positive("--reference-timeout-ms", self.reference_timeout_ms, 1e4)?;
+        let timeout = Duration::from_secs_f64(self.reference_timeout_ms / 1e3);
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        Stream::listen(address, tasks, Duration::from_secs_f64(timeout / 1e3))
+        Stream::listen(address, tasks, timeout)
             .map(Source::Stream)
             .map_err(|error| {
                 let allowed = format!("an address of this PC and a free port ({error})");
@@ -346,15 +350,9 @@ impl RunOptions {
     }
 
     /// The scenario's start posture and how far the arm may be from it \[rad\].
-    fn required_start(
-        &self,
-        scenario: &Scenario,
-    ) -> Result<Option<(JointVector<f64>, f64)>, Invalid> {
-        let Some(degrees) = self.require_start else {
-            return Ok(None);
-        };
-        let tolerance = positive("--require-start", degrees, 360.0)?;
-        Ok(Some((scenario.start(), tolerance.to_radians())))
+    fn required_start(&self, scenario: &Scenario) -> Option<(JointVector<f64>, f64)> {
+        let degrees = self.require_start?;
+        Some((scenario.start(), degrees.to_radians()))
     }
 }
 

@@ -35,7 +35,7 @@ fn scenario() -> Scenario {
     scenario.duration_s = 2.0;
     let mut level = scenario.levels[0].clone();
     level.task = TaskSpec::Orientation;
-    level.reference = ReferenceSpec::Hold;
+    level.reference = ReferenceSpec::Hold {};
     scenario.levels.push(level);
     scenario
 }

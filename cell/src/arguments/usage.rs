@@ -65,6 +65,8 @@ fn line(program: &str, commands: &[&str], arguments: &[String], error: &clap::Er
             format!("{given}: a value is missing; allowed: {help}")
         }
         ErrorKind::ValueValidation | ErrorKind::InvalidValue => {
+            // An option comes with the name of its value: "--seed <SEED>".
+            let given = given.split(' ').next().unwrap_or("");
             match std::error::Error::source(error) {
                 Some(source) => format!("{given}: '{value}'; allowed: {source}"),
                 None => format!("{given}: '{value}'; {help}"),

@@ -2,34 +2,26 @@
 
 use std::net::{SocketAddr, ToSocketAddrs};
 
-use controller_core::ranges::DEAD_CYCLES_MAX;
+use crate::ranges::{Number, Range};
 
-/// A seed.
+/// The reader of numbers in a range.
 ///
 /// # Errors
-/// Anything but a whole number that fits.
-pub fn seed(text: &str) -> Result<u64, String> {
-    text.parse()
-        .map_err(|_| format!("whole numbers 0 to {}", u64::MAX))
+/// No number, or one that is not in the range.
+pub fn number(range: Range<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| read(text, range).ok_or_else(|| range.to_string())
 }
 
-/// Cycles between a torque and its effect.
+/// The reader of whole numbers in a range.
 ///
 /// # Errors
-/// More than the plant can delay, or no whole number.
-pub fn dead_cycles(text: &str) -> Result<u8, String> {
-    let cycles = text.parse().ok();
-    cycles
-        .filter(|cycles| *cycles <= DEAD_CYCLES_MAX)
-        .ok_or_else(|| format!("whole numbers 0 to {DEAD_CYCLES_MAX}"))
+/// No whole number, or one that is not in the range.
+pub fn whole<T: Number>(range: Range<T>) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| read(text, range).ok_or_else(|| format!("whole numbers {range}"))
 }
 
-/// Any number, NaN and infinity among them: its range is checked where it is used.
-///
-/// # Errors
-/// No number.
-pub fn number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "a number".to_string())
+fn read<T: Number>(text: &str, range: Range<T>) -> Option<T> {
+    text.parse().ok().filter(|number| range.contains(*number))
 }
 
 /// A processor, counted from 0.
@@ -83,14 +75,18 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_have_a_range() {
-        assert_eq!(dead_cycles("8"), Ok(8));
+    fn numbers_have_a_range() {
+        let cycles = whole(Range::new(0, 8));
+        assert_eq!(cycles("8"), Ok(8));
         for wrong in ["9", "-1", "1.5", "300", ""] {
-            assert_eq!(
-                dead_cycles(wrong),
-                Err("whole numbers 0 to 8".to_string()),
-                "{wrong}"
-            );
+            let allowed = Err("whole numbers 0 to 8".to_string());
+            assert_eq!(cycles(wrong), allowed, "{wrong}");
+        }
+        let time = number(Range::above(0.0, 0.5));
+        assert_eq!(time("0.5"), Ok(0.5));
+        for wrong in ["0", "-1", "0.6", "NaN", "inf", "ten", ""] {
+            let allowed = Err("above 0, at most 0.5".to_string());
+            assert_eq!(time(wrong), allowed, "{wrong}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! When contacts act.
 
-use crate::invalid::{Invalid, in_range};
-use crate::ranges::DURATION_MAX_S;
+use crate::invalid::Invalid;
+use crate::ranges::TIME_S;
 
 /// How long after a contact its effect still counts as inside \[s\].
 pub const AFTERMATH_S: f64 = 0.3;
@@ -37,8 +37,8 @@ impl Interval {
 
 /// Checks start and end, gives the length \[s\].
 pub(super) fn validate_times(from_s: f64, to_s: f64) -> Result<f64, Invalid> {
-    in_range("from_s", from_s, 0.0, DURATION_MAX_S)?;
-    in_range("to_s", to_s, 0.0, DURATION_MAX_S)?;
+    TIME_S.check("from_s", from_s)?;
+    TIME_S.check("to_s", to_s)?;
     if to_s <= from_s {
         return Err(Invalid::new(
             "to_s",

@@ -7,7 +7,8 @@ use serde::Deserialize;
 
 use super::contact::{Interval, validate_times};
 use super::point::PointSpec;
-use crate::invalid::{Invalid, in_range, positive};
+use crate::invalid::Invalid;
+use crate::ranges::{HAND_DAMPING_NS_M, HAND_STIFFNESS_N_M, HAND_TRAVEL_M, Range};
 
 /// F = max(0, k (y0 + travel b((t - from) / approach) b((to - t) / approach) - y) - d dy),
 /// y the point's coordinate along `direction`, y0 its value at the start.
@@ -52,10 +53,10 @@ impl Hand {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.point.validate()?;
         let half = validate_times(self.from_s, self.to_s)? / 2.0;
-        positive("approach_s", self.approach_s, half)?;
-        positive("stiffness_n_m", self.stiffness_n_m, 1e5)?;
-        in_range("damping_ns_m", self.damping_ns_m, 0.0, 1e4)?;
-        in_range("travel_m", self.travel_m, -1.0, 1.0).map(drop)
+        Range::above(0.0, half).check("approach_s", self.approach_s)?;
+        HAND_STIFFNESS_N_M.check("stiffness_n_m", self.stiffness_n_m)?;
+        HAND_DAMPING_NS_M.check("damping_ns_m", self.damping_ns_m)?;
+        HAND_TRAVEL_M.check("travel_m", self.travel_m).map(drop)
     }
 
     /// When it acts.

@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::point::PointSpec;
 use super::reference::ReferenceSpec;
-use crate::invalid::{Invalid, positive};
-use crate::ranges::GAIN_MAX;
+use crate::invalid::Invalid;
+use crate::ranges::GAIN;
 
 /// What a level tracks.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl LevelSpec {
                 ));
             }
             for value in gain.values() {
-                positive(name, value, GAIN_MAX)?;
+                GAIN.check(name, value)?;
             }
         }
         if self.reference.is_rotation() == Some(self.task != TaskSpec::Orientation) {

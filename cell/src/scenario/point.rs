@@ -1,14 +1,11 @@
 //! Points of the arm in files: by name, or on any link.
 
 use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
-use controller_core::joint::DOF;
 use controller_core::{Link, LinkPoint};
 use serde::Deserialize;
 
-use crate::invalid::{Invalid, in_range};
-
-/// Farthest point from its link's frame \[m\].
-const OFFSET_MAX_M: f64 = 2.0;
+use crate::invalid::Invalid;
+use crate::ranges::{LINK, OFFSET_M};
 
 /// A point fixed to a link.
 #[derive(Clone, Debug, Deserialize)]
@@ -49,12 +46,10 @@ impl PointSpec {
                 }
             }
             Self::OnLink(OnLink { link, offset_m }) => {
-                if !(1..=DOF).contains(link) {
-                    return Err(Invalid::new("link", link, "1 to 7"));
-                }
-                offset_m.iter().try_for_each(|&x| {
-                    in_range("offset_m", x, -OFFSET_MAX_M, OFFSET_MAX_M).map(drop)
-                })
+                LINK.check("link", *link)?;
+                offset_m
+                    .iter()
+                    .try_for_each(|&x| OFFSET_M.check("offset_m", x).map(drop))
             }
         }
     }

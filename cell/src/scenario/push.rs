@@ -5,7 +5,8 @@ use serde::Deserialize;
 
 use super::contact::{Interval, validate_times};
 use super::point::PointSpec;
-use crate::invalid::{Invalid, in_range, positive};
+use crate::invalid::Invalid;
+use crate::ranges::{FORCE_N, Range};
 
 /// Force on a point of the arm, by the clock.
 #[derive(Clone, Debug, Deserialize)]
@@ -31,10 +32,10 @@ impl Push {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.point.validate()?;
         let half = validate_times(self.from_s, self.to_s)? / 2.0;
-        positive("ramp_s", self.ramp_s, half)?;
+        Range::above(0.0, half).check("ramp_s", self.ramp_s)?;
         self.force_n
             .iter()
-            .try_for_each(|&force| in_range("force_n", force, -1e4, 1e4).map(drop))
+            .try_for_each(|&force| FORCE_N.check("force_n", force).map(drop))
     }
 
     /// When it acts.

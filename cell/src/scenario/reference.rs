@@ -5,15 +5,16 @@ use controller_core::joint::Vector3;
 use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
-use crate::invalid::{Invalid, in_range, positive};
-use crate::ranges::DURATION_MAX_S;
+use crate::invalid::Invalid;
+use crate::ranges::{AXIS_LENGTH, DURATION_S, OFFSET_M, PERIOD_S, RADIUS_M, SWING_DEG};
 
-/// Motion of a level's point about where it is at the start.
+/// Motion of a level's point about where it is at the start; in files a table that says its
+/// kind.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum ReferenceSpec {
     /// Rest.
-    Hold,
+    Hold {},
     /// Straight move, then rest.
     Move {
         /// Displacement \[m\].
@@ -76,23 +77,23 @@ impl ReferenceSpec {
     /// What is out of range.
     pub fn validate(&self) -> Result<(), Invalid> {
         match self {
-            Self::Hold => Ok(()),
+            Self::Hold {} => Ok(()),
             Self::Move { by_m, duration_s } => {
-                positive("duration_s", *duration_s, DURATION_MAX_S)?;
+                DURATION_S.check("duration_s", *duration_s)?;
                 by_m.iter()
-                    .try_for_each(|&x| in_range("by_m", x, -2.0, 2.0).map(drop))
+                    .try_for_each(|&x| OFFSET_M.check("by_m", x).map(drop))
             }
             Self::Circle(turn) | Self::Spiral(turn) => {
-                in_range("radius_m", turn.radius_m, 0.0, 2.0)?;
-                in_range("period_s", turn.period_s, 0.05, DURATION_MAX_S)?;
-                in_range("growth_s", turn.growth_s, 0.05, DURATION_MAX_S).map(drop)
+                RADIUS_M.check("radius_m", turn.radius_m)?;
+                PERIOD_S.check("period_s", turn.period_s)?;
+                PERIOD_S.check("growth_s", turn.growth_s).map(drop)
             }
             Self::Swing(swing) => {
                 let norm = Vector3::from(swing.axis).norm();
-                in_range("axis length", norm, 1e-3, 1e3)?;
-                in_range("angle_deg", swing.angle_deg, -350.0, 350.0)?;
-                in_range("period_s", swing.period_s, 0.05, DURATION_MAX_S)?;
-                in_range("growth_s", swing.growth_s, 0.05, DURATION_MAX_S).map(drop)
+                AXIS_LENGTH.check("axis length", norm)?;
+                SWING_DEG.check("angle_deg", swing.angle_deg)?;
+                PERIOD_S.check("period_s", swing.period_s)?;
+                PERIOD_S.check("growth_s", swing.growth_s).map(drop)
             }
         }
     }
@@ -101,7 +102,7 @@ impl ReferenceSpec {
     #[must_use]
     pub fn is_rotation(&self) -> Option<bool> {
         match self {
-            Self::Hold => None,
+            Self::Hold {} => None,
             Self::Swing(_) => Some(true),
             Self::Move { .. } | Self::Circle(_) | Self::Spiral(_) => Some(false),
         }
@@ -123,7 +124,7 @@ impl ReferenceSpec {
     /// The motion of a point; none for others and for rest.
     fn trajectory(&self) -> Option<Trajectory<f64>> {
         match self {
-            Self::Hold | Self::Swing(_) => None,
+            Self::Hold {} | Self::Swing(_) => None,
             Self::Move { by_m, duration_s } => Some(Trajectory::Move {
                 by: (*by_m).into(),
                 duration_s: *duration_s,

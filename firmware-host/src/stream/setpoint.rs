@@ -2,31 +2,31 @@
 
 use std::fmt;
 
-use cell::invalid::in_range;
+use cell::ranges::{QUATERNION_NORM, Range};
 use controller_core::arm::LWR_IV_POINTS;
 use controller_core::joint::Vector3;
-use controller_core::ranges::{MAX_LEVELS, QUATERNION_NORMS};
+use controller_core::ranges::MAX_LEVELS;
 use controller_core::task::Tracked;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Target, Task, TaskSet};
 
-/// A vector of a level: its name, the largest magnitude of its entries, its unit.
-type Range = (&'static str, f64, &'static str);
+/// A vector of a level: its name, the range of its entries, its unit.
+type Quantity = (&'static str, Range<f64>, &'static str);
 
 /// Of a position. The flange is at most 1.2 m from the base and moves at 3.7 m/s with all
 /// joints at their data-sheet speed: what is beyond is another unit, not a motion. From
 /// rest to full speed in 50 ms is as quick as tasks with a K_p of 400 1/s2 answer.
-const POSITION: [Range; 3] = [
-    ("position", 3.0, "m"),
-    ("velocity", 5.0, "m/s"),
-    ("acceleration", 100.0, "m/s2"),
+const POSITION: [Quantity; 3] = [
+    ("position", Range::new(-3.0, 3.0), "m"),
+    ("velocity", Range::new(-5.0, 5.0), "m/s"),
+    ("acceleration", Range::new(-100.0, 100.0), "m/s2"),
 ];
 
 /// Of an orientation, besides the quaternion. All joints at their data-sheet speed about
 /// one axis come to 18.3 rad/s; the acceleration is full speed in 40 ms.
-const ROTATION: [Range; 2] = [
-    ("angular velocity", 20.0, "rad/s"),
-    ("angular acceleration", 500.0, "rad/s2"),
+const ROTATION: [Quantity; 2] = [
+    ("angular velocity", Range::new(-20.0, 20.0), "rad/s"),
+    ("angular acceleration", Range::new(-500.0, 500.0), "rad/s2"),
 ];
 
 /// Numbers of a position.
@@ -163,14 +163,14 @@ impl<'a> Level<'a> {
     fn vectors<const N: usize>(
         &self,
         numbers: &[f64],
-        ranges: [Range; N],
+        quantities: [Quantity; N],
     ) -> Result<[Vector3<f64>; N], String> {
         let mut vectors = [Vector3::zeros(); N];
-        let triples = numbers.chunks_exact(3).zip(ranges);
-        for (vector, (triple, (name, limit, unit))) in vectors.iter_mut().zip(triples) {
+        let triples = numbers.chunks_exact(3).zip(quantities);
+        for (vector, (triple, (name, range, unit))) in vectors.iter_mut().zip(triples) {
             for ((axis, entry), number) in ["x", "y", "z"].iter().zip(vector).zip(triple) {
                 let thing = format_args!("{self}: {name} {axis} [{unit}]");
-                *entry = in_range(thing, *number, -limit, limit).map_err(|e| e.to_string())?;
+                *entry = range.check(thing, *number).map_err(|e| e.to_string())?;
             }
         }
         Ok(vectors)
@@ -179,9 +179,10 @@ impl<'a> Level<'a> {
     /// The unit quaternion of four numbers.
     fn quaternion(&self, numbers: &[f64]) -> Result<Quaternion<f64>, String> {
         let q = Quaternion::from_iterator(numbers.iter().copied());
-        let [low, high] = QUATERNION_NORMS;
         let thing = format_args!("{self}: quaternion norm");
-        let norm = in_range(thing, q.norm(), low, high).map_err(|e| e.to_string())?;
+        let norm = QUATERNION_NORM
+            .check(thing, q.norm())
+            .map_err(|e| e.to_string())?;
         // Transitions begin at it, and take it for one.
         Ok(q / norm)
     }
@@ -446,7 +447,19 @@ pub(super) mod tests {
     #[test]
     fn no_link_turns_beyond_the_range() {
         let fastest: f64 = LWR_IV.links.iter().map(|link| link.speed_limit).sum();
-        let [(_, limit, _), _] = ROTATION;
-        assert!(fastest < limit, "{fastest}");
+        let [(_, range, _), _] = ROTATION;
+        assert!(range.contains(fastest), "{fastest}");
+    }
+
+    #[test]
+    fn the_document_says_the_ranges() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/fri.md");
+        let text = std::fs::read_to_string(path).expect("the document");
+        let rows = POSITION.iter().chain(&ROTATION);
+        let rows = rows.map(|(name, range, unit)| format!("| {name} | {range} {unit} |"));
+        let norm = format!("| norm of the quaternion | {QUATERNION_NORM} |");
+        for row in rows.chain([norm]) {
+            assert!(text.contains(&row), "docs/fri.md has to contain {row}");
+        }
     }
 }

@@ -13,16 +13,17 @@ use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::summary::Summary;
-use cell::arguments::values::{dead_cycles, number, seed};
-use cell::invalid::{Invalid, in_range, positive};
+use cell::arguments::values::{number, whole};
+use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
-use cell::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, SEED};
 use cell::scenario::Scenario;
 use cell::terminal::{print, show, tell};
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct RunOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
     scenario: String,
@@ -41,9 +42,9 @@ pub struct RunOptions {
     /// How the controller sees the arm: direct, or fri: through the datagrams of the robot link, speeds estimated
     #[arg(long, default_value = "direct")]
     measurement: String,
-    /// Cycles between the torque and its effect, 0 to 8; above 0 the null-space
-    /// damping is the scenario's inertia-shaped one
-    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the torque and its effect, {DEAD_CYCLES}; above 0 the \
+            null-space damping is the scenario's inertia-shaped one"))]
     dead_cycles: u8,
     /// True stiction instead of smooth friction (realistic plant): on, off
     #[arg(long, default_value = "off")]
@@ -52,13 +53,13 @@ pub struct RunOptions {
     #[arg(long, default_value = "off")]
     elasticity: String,
     /// Seed of mismatch and noise (realistic plant), whole numbers from 0
-    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(SEED))]
     seed: u64,
-    /// Length in s, above 0, at most 3600 [default: the scenario's]
-    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    /// Control cycle in ms, 0.1 to 20 [default: the scenario's]
-    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_parser = number(CYCLE_MS),
+        help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]
@@ -117,13 +118,8 @@ impl RunOptions {
 
     fn experiment(&self) -> Result<Experiment, Invalid> {
         let mut scenario = Scenario::find(&self.scenario)?;
-        if let Some(duration) = self.duration {
-            scenario.duration_s = positive("--duration", duration, DURATION_MAX_S)?;
-        }
-        if let Some(cycle) = self.cycle_ms {
-            let [min, max] = CYCLE_RANGE_MS;
-            scenario.cycle_ms = in_range("--cycle-ms", cycle, min, max)?;
-        }
+        scenario.duration_s = self.duration.unwrap_or(scenario.duration_s);
+        scenario.cycle_ms = self.cycle_ms.unwrap_or(scenario.cycle_ms);
         let plant = PlantKind::from_name(&self.plant)?;
         let option = |name: &str, value: &str| {
             let on = switch(name, value)?;

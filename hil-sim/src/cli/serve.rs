@@ -7,17 +7,17 @@ use clap::Args;
 
 use super::files::Files;
 use super::run::{footer, heading, quoted, switch, table};
-use crate::link::{Fault, Window};
+use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, scheme_named,
 };
 use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
-use cell::arguments::values::{dead_cycles, number, peer, seed};
-use cell::invalid::{Invalid, in_range, positive};
+use cell::arguments::values::{number, peer, whole};
+use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, PlantKind};
-use cell::ranges::{CYCLE_RANGE_MS, DURATION_MAX_S};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED, WAIT_S};
 use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
 use record::run::Sample;
@@ -28,11 +28,29 @@ const NO_CLIENT: u8 = 4;
 /// Port of the client's side.
 const PORT: u16 = 49_938;
 
+/// Ports that can be sent to, and own ports: 0 is any.
+const PORTS: Range<u16> = Range::new(1, u16::MAX);
+const OWN_PORTS: Range<u16> = Range::new(0, u16::MAX);
+
 /// Cycles that the protocol has \[ms\].
-const FRI_CYCLE_MIN_MS: f64 = 1.0;
+const FRI_CYCLE_MS: Range<f64> = Range::new(1.0, CYCLE_MS.max);
+
+/// Jitter \[cycles\], answers that may be missing in a row, time with quality ok \[s\].
+const JITTER: Range<f64> = Range::new(0.0, 1000.0);
+const MISSES: Range<u32> = Range::new(0, 1_000_000);
+const GOOD_FOR_S: Range<f64> = Range::new(0.0, 60.0);
+
+/// What the robot lets into command state \[mrad\], \[Nm\].
+const ENTRY_MRAD: Range<f64> = Range::new(0.0, 1000.0);
+const ENTRY_NM: Range<f64> = Range::new(0.0, 200.0);
+
+/// Speed limit over the data sheet's; stiffness of the robot program \[Nm/rad\].
+const SPEED_FACTOR: Range<f64> = Range::above(0.0, 10.0);
+const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 
 /// Options of `serve`.
 #[derive(Clone, Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
     /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: start, contacts, what is judged
     #[arg(long, default_value = "two-level")]
@@ -44,28 +62,28 @@ pub struct ServeOptions {
     #[arg(long, default_value = "on")]
     contacts: String,
     /// Seed of mismatch, noise and faults, whole numbers from 0
-    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = whole(SEED))]
     seed: u64,
     /// Where the client is, ADDRESS:PORT [default: 127.0.0.1:49938]
-    #[arg(long)]
-    remote: Option<String>,
+    #[arg(long, value_parser = peer)]
+    remote: Option<SocketAddr>,
     /// Short for --remote 127.0.0.1:PORT
-    #[arg(long, allow_negative_numbers = true)]
-    port: Option<String>,
+    #[arg(long, value_parser = whole(PORTS))]
+    port: Option<u16>,
     /// A serial line instead: device or pseudo terminal
     #[arg(long, value_name = "PATH")]
     serial: Option<PathBuf>,
-    /// Own port, 1 to 65535; 0: any
-    #[arg(long, default_value = "0", allow_negative_numbers = true)]
-    local_port: String,
-    /// Cycle in ms, 1 to 20 [default: the scenario's]
-    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_parser = whole(OWN_PORTS),
+        help = format!("Own port, {PORTS}; 0: any"))]
+    local_port: u16,
+    #[arg(long, value_parser = number(FRI_CYCLE_MS),
+        help = format!("Cycle in ms, {FRI_CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
-    /// Length in s, above 0, at most 3600 [default: the scenario's]
-    #[arg(long, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_parser = number(DURATION_S),
+        help = format!("Length in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    /// Cycles between the added torque and its effect, 0 to 8
-    #[arg(long, default_value_t = 0, value_parser = dead_cycles, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the added torque and its effect, {DEAD_CYCLES}"))]
     dead_cycles: u8,
     /// Virtual time: as fast as both sides can, the same bytes every time
     #[arg(long)]
@@ -79,16 +97,17 @@ pub struct ServeOptions {
     /// What the robot adds to the torque itself: gravity, gravity-coriolis
     #[arg(long, default_value = "gravity")]
     robot_adds: String,
-    /// What goes wrong on the link: DIR to-client, to-robot, both; KIND drop=P duplicate=P
-    /// reorder=P corrupt=P burst=PxN (P 0 to 1, N 1 to 10000 in a row) delay=MS jitter=MS
-    /// (0 to 10000) freeze; FROM-TO in s of the scenario. May be given more than once
-    #[arg(long, value_name = "DIR:KIND[@FROM-TO]")]
+    #[arg(long, value_name = "DIR:KIND[@FROM-TO]",
+        help = format!("What goes wrong on the link: DIR to-client, to-robot, both; KIND drop=P \
+            duplicate=P reorder=P corrupt=P burst=PxN (P {SHARE}, N {BURST} in a row) delay=MS \
+            jitter=MS ({DELAY_MS}) freeze; FROM-TO in s of the scenario. May be given more than once"))]
     fault: Vec<String>,
     /// Scenario time during which the drives are off, in s
     #[arg(long, value_name = "FROM-TO")]
     drives_off: Option<String>,
-    /// Time to wait for the first answer, and then for command state, in s, above 0
-    #[arg(long, default_value = "60", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "60", value_parser = number(WAIT_S),
+        help = format!("Time to wait for the first answer, and then for command state, in s, \
+            {WAIT_S}"))]
     wait: f64,
     /// Output folder [default: out/serve-SCENARIO]
     #[arg(long)]
@@ -102,58 +121,50 @@ pub struct ServeOptions {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Thresholds")]
 struct Thresholds {
-    /// Least share of answers in time for quality perfect, 0 to 1
-    #[arg(long, default_value = "0.99", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.99", value_parser = number(SHARE),
+        help = format!("Least share of answers in time for quality perfect, {SHARE}"))]
     perfect_rate: f64,
     /// The same for quality ok, not above that of perfect
-    #[arg(long, default_value = "0.95", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.95", value_parser = number(SHARE))]
     ok_rate: f64,
     /// The same for quality bad, not above that of ok; below it: unacceptable
-    #[arg(long, default_value = "0.8", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.8", value_parser = number(SHARE))]
     bad_rate: f64,
-    /// Largest jitter for quality perfect, in cycles, 0 to 1000
-    #[arg(long, default_value = "0.25", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.25", value_parser = number(JITTER),
+        help = format!("Largest jitter for quality perfect, in cycles, {JITTER}"))]
     perfect_jitter: f64,
-    /// Missing answers in a row that are borne, whole numbers 0 to 1000000
-    #[arg(long, default_value = "10", value_parser = number, allow_negative_numbers = true)]
-    misses: f64,
-    /// Time with quality ok before command state, in s, 0 to 60
-    #[arg(long, default_value = "0.2", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "10", value_parser = whole(MISSES),
+        help = format!("Missing answers in a row that are borne, whole numbers {MISSES}"))]
+    misses: u32,
+    #[arg(long, default_value = "0.2", value_parser = number(GOOD_FOR_S),
+        help = format!("Time with quality ok before command state, in s, {GOOD_FOR_S}"))]
     good_for: f64,
-    /// Largest distance of jntPos from the commanded position on entry, in mrad, 0 to 1000
-    #[arg(long, default_value = "5", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "5", value_parser = number(ENTRY_MRAD),
+        help = format!("Largest distance of jntPos from the commanded position on entry, in mrad, \
+            {ENTRY_MRAD}"))]
     entry_mrad: f64,
-    /// Largest added torque on entry, in Nm, 0 to 200
-    #[arg(long, default_value = "1", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1", value_parser = number(ENTRY_NM),
+        help = format!("Largest added torque on entry, in Nm, {ENTRY_NM}"))]
     entry_nm: f64,
-    /// Speed limit of jntPos over the data sheet's, above 0, at most 10
-    #[arg(long, default_value = "1.1", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1.1", value_parser = number(SPEED_FACTOR),
+        help = format!("Speed limit of jntPos over the data sheet's, {SPEED_FACTOR}"))]
     speed_factor: f64,
-    /// Stiffness of the robot program, in Nm/rad, above 0, at most 2000
-    #[arg(long, default_value = "1000", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1000", value_parser = number(KRL_STIFFNESS),
+        help = format!("Stiffness of the robot program, in Nm/rad, {KRL_STIFFNESS}"))]
     krl_stiffness: f64,
-    /// Damping ratio of the robot program, 0 to 1
-    #[arg(long, default_value = "0.7", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, default_value = "0.7", value_parser = number(SHARE),
+        help = format!("Damping ratio of the robot program, {SHARE}"))]
     krl_damping: f64,
 }
 
 impl Thresholds {
     fn options(&self) -> Result<RobotOptions, Invalid> {
-        let share = |name: &str, value| in_range(name, value, 0.0, 1.0);
-        let misses = in_range("--misses", self.misses, 0.0, 1e6)?;
-        if misses.fract() != 0.0 {
-            return Err(Invalid::new(
-                "--misses",
-                misses,
-                "whole numbers 0 to 1000000",
-            ));
-        }
         let rating = RatingOptions {
-            perfect_rate: share("--perfect-rate", self.perfect_rate)?,
-            ok_rate: share("--ok-rate", self.ok_rate)?,
-            bad_rate: share("--bad-rate", self.bad_rate)?,
-            perfect_jitter: in_range("--perfect-jitter", self.perfect_jitter, 0.0, 1e3)?,
-            misses_max: misses as u32,
+            perfect_rate: self.perfect_rate,
+            ok_rate: self.ok_rate,
+            bad_rate: self.bad_rate,
+            perfect_jitter: self.perfect_jitter,
+            misses_max: self.misses,
         };
         if !(rating.bad_rate <= rating.ok_rate && rating.ok_rate <= rating.perfect_rate) {
             let given = format_args!(
@@ -166,12 +177,12 @@ impl Thresholds {
         }
         Ok(RobotOptions {
             rating,
-            good_for_s: in_range("--good-for", self.good_for, 0.0, 60.0)?,
-            entry_position_rad: in_range("--entry-mrad", self.entry_mrad, 0.0, 1e3)? * 1e-3,
-            entry_torque_nm: in_range("--entry-nm", self.entry_nm, 0.0, 200.0)?,
-            speed_factor: positive("--speed-factor", self.speed_factor, 10.0)?,
-            stiffness: positive("--krl-stiffness", self.krl_stiffness, 2000.0)?,
-            damping: share("--krl-damping", self.krl_damping)?,
+            good_for_s: self.good_for,
+            entry_position_rad: self.entry_mrad * 1e-3,
+            entry_torque_nm: self.entry_nm,
+            speed_factor: self.speed_factor,
+            stiffness: self.krl_stiffness,
+            damping: self.krl_damping,
             ..RobotOptions::default()
         })
     }
@@ -233,10 +244,6 @@ impl ServeOptions {
     }
 
     fn service(&self) -> Result<Service, Invalid> {
-        let port = |name: &str, text: &str, least: u16| {
-            let port = text.parse().ok().filter(|port| *port >= least);
-            port.ok_or_else(|| Invalid::new(name, text, format_args!("{least} to 65535")))
-        };
         let given = [
             self.remote.is_some(),
             self.port.is_some(),
@@ -250,36 +257,29 @@ impl ServeOptions {
                 allowed,
             ));
         }
-        let remote = match (&self.remote, &self.port) {
-            (Some(remote), _) => {
-                peer(remote).map_err(|allowed| Invalid::new("--remote", remote, allowed))?
-            }
-            (None, Some(text)) => SocketAddr::from(([127, 0, 0, 1], port("--port", text, 1)?)),
-            (None, None) => SocketAddr::from(([127, 0, 0, 1], PORT)),
-        };
+        let here = |port| SocketAddr::from(([127, 0, 0, 1], port));
+        let remote = self.remote.unwrap_or(here(self.port.unwrap_or(PORT)));
         let faults = self.fault.iter().map(|spec| spec.parse::<Fault>());
         Ok(Service {
             client: match &self.serial {
                 Some(path) => Client::Serial(path.clone()),
                 None => Client::Udp {
                     remote,
-                    local_port: port("--local-port", &self.local_port, 0)?,
+                    local_port: self.local_port,
                 },
             },
             lockstep: self.lockstep,
             faults: faults.collect::<Result<_, _>>()?,
-            wait_s: positive("--wait", self.wait, 1e6)?,
+            wait_s: self.wait,
         })
     }
 
     fn setup(&self) -> Result<RobotSetup, Invalid> {
         let mut scenario = Scenario::find(&self.scenario)?;
-        if let Some(duration) = self.duration {
-            scenario.duration_s = positive("--duration", duration, DURATION_MAX_S)?;
-        }
-        let [_, max] = CYCLE_RANGE_MS;
+        scenario.duration_s = self.duration.unwrap_or(scenario.duration_s);
+        // That of the scenario may be too short for the protocol.
         let cycle = self.cycle_ms.unwrap_or(scenario.cycle_ms);
-        scenario.cycle_ms = in_range("--cycle-ms", cycle, FRI_CYCLE_MIN_MS, max)?;
+        scenario.cycle_ms = FRI_CYCLE_MS.check("--cycle-ms", cycle)?;
         if self.scheme == "cartesian-impedance" {
             let allowed = "joint-impedance, position";
             return Err(Invalid::new(

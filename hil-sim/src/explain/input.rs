@@ -2,16 +2,23 @@
 
 use controller_core::arm::{ArmParameters, LWR_IV};
 use controller_core::joint::{DOF, Vector3};
-use controller_core::ranges::MAX_ROWS;
+use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::TorqueLaw;
-use cell::invalid::{Invalid, in_range};
+use cell::invalid::Invalid;
 use cell::names::Named;
-use cell::reworded::reworded;
-use cell::scenario::{PointSpec, TaskSpec, joints};
+use cell::ranges::{LEVELS, QUATERNION_NORM, ROWS, Range};
+use cell::reader;
+use cell::scenario::{PointSpec, TaskSpec};
+
+/// K_I \[1/s\].
+const OBSERVER_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);
+
+/// Interval of the observer \[s\].
+const INTERVAL_S: Range<f64> = Range::above(0.0, 10.0);
 
 /// One control cycle. SI units, base-plate frame.
 #[derive(Clone, Debug, Deserialize)]
@@ -20,13 +27,11 @@ pub struct Input {
     /// Name of the arm.
     pub robot: String,
     /// q \[rad\].
-    #[serde(deserialize_with = "joints")]
     pub q: [f64; DOF],
     /// dq \[rad/s\].
-    #[serde(deserialize_with = "joints")]
     pub dq: [f64; DOF],
     /// r \[Nm\]; not read where `observer` is given.
-    #[serde(default, deserialize_with = "joints")]
+    #[serde(default)]
     pub residual: [f64; DOF],
     /// Task levels, highest priority first.
     pub levels: Vec<Level>,
@@ -68,16 +73,13 @@ pub struct Level {
 #[serde(deny_unknown_fields)]
 pub struct NullSpace {
     /// q_d \[rad\].
-    #[serde(deserialize_with = "joints")]
     pub q_d: [f64; DOF],
     /// K_q \[Nm/rad\].
-    #[serde(deserialize_with = "joints")]
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\].
-    #[serde(deserialize_with = "joints")]
     pub damping: [f64; DOF],
     /// K of (14) \[1/s\], for the acceleration-level controllers.
-    #[serde(default = "default_rate_gain", deserialize_with = "joints")]
+    #[serde(default = "default_rate_gain")]
     pub rate_gain: [f64; DOF],
 }
 
@@ -90,16 +92,12 @@ fn default_rate_gain() -> [f64; DOF] {
 #[serde(deny_unknown_fields)]
 pub struct ObserverStep {
     /// p \[Nms\].
-    #[serde(deserialize_with = "joints")]
     pub momentum_prev: [f64; DOF],
     /// u = tau + C^T dq - g \[Nm\].
-    #[serde(deserialize_with = "joints")]
     pub input_prev: [f64; DOF],
     /// r \[Nm\].
-    #[serde(deserialize_with = "joints")]
     pub residual_prev: [f64; DOF],
     /// K_I \[1/s\].
-    #[serde(deserialize_with = "joints")]
     pub gain: [f64; DOF],
     /// Interval \[s\].
     pub h: f64,
@@ -115,21 +113,7 @@ impl Input {
             let allowed = "a JSON object, as in docs/explain.md";
             return Err(Invalid::new("state", "empty", allowed));
         }
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let input: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-            let path = error.path().to_string();
-            let message = explained(text, &error.into_inner());
-            if path == "." {
-                message
-            } else {
-                message.within(path)
-            }
-        })?;
-        deserializer
-            .end()
-            .map_err(|error| Invalid::line(error).within("after the state"))?;
-        input.validate()?;
-        Ok(input)
+        reader::json(text, Self::validate)
     }
 
     fn validate(&self) -> Result<(), Invalid> {
@@ -138,45 +122,28 @@ impl Input {
         }
         for (joint, (&q, link)) in (1..).zip(self.q.iter().zip(&LWR_IV.links)) {
             let limit = link.position_limit;
-            in_range(format_args!("q of joint {joint}"), q, -limit, limit)?;
-        }
-        finite("dq", &self.dq)?;
-        finite("residual", &self.residual)?;
-        for (name, values) in [
-            ("null_space.q_d", &self.null_space.q_d),
-            ("null_space.stiffness", &self.null_space.stiffness),
-            ("null_space.damping", &self.null_space.damping),
-            ("null_space.rate_gain", &self.null_space.rate_gain),
-        ] {
-            finite(name, values)?;
+            Range::new(-limit, limit).check(format_args!("q of joint {joint}"), q)?;
         }
         if let Some(name) = &self.controller {
             TorqueLaw::from_name(name)?;
         }
         if self.levels.is_empty() {
-            return Err(Invalid::new("levels", "none", "1 to 7 levels"));
+            return Err(Invalid::new("levels", "none", LEVELS));
         }
         let mut rows = 0;
         for (index, level) in self.levels.iter().enumerate() {
             rows += level
                 .validate()
-                .map_err(|error| error.within(format_args!("levels[{index}]")))?;
+                .map_err(|error| error.in_list("levels", index))?;
         }
-        if rows > MAX_ROWS {
-            return Err(Invalid::new(
-                "levels",
-                format_args!("{rows} rows together"),
-                "1 to 7",
-            ));
+        if !ROWS.contains(rows) {
+            let given = format!("{rows} rows together");
+            return Err(Invalid::new("levels", given, ROWS));
         }
         if let Some(observer) = &self.observer {
-            finite("observer.momentum_prev", &observer.momentum_prev)?;
-            finite("observer.input_prev", &observer.input_prev)?;
-            finite("observer.residual_prev", &observer.residual_prev)?;
-            for gain in observer.gain {
-                in_range("observer.gain", gain, 0.0, 1e9)?;
-            }
-            cell::invalid::positive("observer.h", observer.h, 10.0)?;
+            observer
+                .validate()
+                .map_err(|error| error.in_table("observer"))?;
         }
         Ok(())
     }
@@ -198,6 +165,15 @@ impl Input {
     #[must_use]
     pub fn tasks(&self) -> (Vec<Task>, Vec<Target<f64>>) {
         self.levels.iter().map(Level::task).unzip()
+    }
+}
+
+impl ObserverStep {
+    fn validate(&self) -> Result<(), Invalid> {
+        for gain in self.gain {
+            OBSERVER_GAIN.check("gain", gain)?;
+        }
+        INTERVAL_S.check("h", self.h).map(drop)
     }
 }
 
@@ -233,11 +209,10 @@ impl Level {
                     allowed,
                 ));
             }
-            finite(name, values)?;
         }
         if self.task == TaskSpec::Orientation {
             let norm = self.x.iter().map(|x| x * x).sum::<f64>().sqrt();
-            in_range("norm of x", norm, 0.5, 2.0)?;
+            QUATERNION_NORM.check("norm of x", norm)?;
         }
         Ok(rows)
     }
@@ -278,37 +253,19 @@ impl Level {
     }
 }
 
-fn finite(name: &str, values: &[f64]) -> Result<(), Invalid> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(value) => Err(Invalid::new(name, value, "finite numbers")),
-        None => Ok(()),
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// A JSON error with the word it stumbled over: JSON has no NaN or Infinity.
-fn explained(text: &str, error: &serde_json::Error) -> Invalid {
-    let line = text
-        .lines()
-        .nth(error.line().saturating_sub(1))
-        .unwrap_or("");
-    let at = error.column().saturating_sub(1).min(line.len());
-    let delimiter = |c: char| c.is_whitespace() || "[]{},:\"".contains(c);
-    let (before, after) = line.split_at_checked(at).unwrap_or((line, ""));
-    let start = before.rfind(delimiter).map_or(0, |i| i + 1);
-    let end = after.find(delimiter).map_or(line.len(), |i| at + i);
-    let word = line.get(start..end).unwrap_or("");
-    if error.is_syntax() && !word.is_empty() {
-        return Invalid::new(
-            format_args!("'{word}'"),
-            error,
-            "finite JSON numbers and text in quotes",
-        );
+    #[test]
+    fn the_document_says_the_ranges() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/explain.md");
+        let text = std::fs::read_to_string(path).expect("the document");
+        for row in [
+            format!("| `gain` | 7 | 1/s | K_I, {OBSERVER_GAIN} |"),
+            format!("| `h` | 1 | s | interval, {INTERVAL_S} |"),
+        ] {
+            assert!(text.contains(&row), "docs/explain.md has to contain {row}");
+        }
     }
-    let text = error.to_string();
-    let (message, place) = text.rsplit_once(" at line ").unwrap_or((&text, ""));
-    let reworded = reworded(message);
-    if reworded.to_string() == message {
-        return Invalid::line(error);
-    }
-    reworded.within(format_args!("line {place}"))
 }

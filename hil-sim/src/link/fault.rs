@@ -2,13 +2,17 @@
 
 use std::str::FromStr;
 
-use cell::invalid::{Invalid, in_range};
+use cell::invalid::Invalid;
+use cell::ranges::Range;
 
-/// Longest delay and jitter \[ms\].
-const DELAY_MAX_MS: f64 = 10_000.0;
+/// Probabilities and other shares.
+pub const SHARE: Range<f64> = Range::new(0.0, 1.0);
 
-/// Longest burst.
-const BURST_MAX: u32 = 10_000;
+/// Delay and jitter \[ms\].
+pub const DELAY_MS: Range<f64> = Range::new(0.0, 10_000.0);
+
+/// Datagrams of a burst.
+pub const BURST: Range<u32> = Range::new(1, 10_000);
 
 /// Which way a datagram goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,9 +159,9 @@ fn read_kind(kind: &str, value: Option<&str>) -> Result<FaultKind, Invalid> {
     let bad = |value: &str| Invalid::new(kind, value, allowed);
     let value = value.ok_or_else(|| bad("no value"))?;
     let number = |text: &str| text.parse::<f64>().map_err(|_| bad(value));
-    let share = |text: &str| number(text).and_then(|p| in_range(kind, p, 0.0, 1.0));
+    let share = |text: &str| number(text).and_then(|p| SHARE.check(kind, p));
     let time = |text: &str| {
-        let ms = number(text).and_then(|ms| in_range(kind, ms, 0.0, DELAY_MAX_MS));
+        let ms = number(text).and_then(|ms| DELAY_MS.check(kind, ms));
         ms.map(|ms| ms * 1e-3)
     };
     Ok(match kind {
@@ -169,8 +173,8 @@ fn read_kind(kind: &str, value: Option<&str>) -> Result<FaultKind, Invalid> {
         "corrupt" => FaultKind::Corrupt(share(value)?),
         _ => {
             let (p, count) = value.split_once('x').ok_or_else(|| bad(value))?;
-            let count: u32 = count.parse().map_err(|_| bad(value))?;
-            in_range("burst length", f64::from(count), 1.0, f64::from(BURST_MAX))?;
+            let count = count.parse().map_err(|_| bad(value))?;
+            BURST.check("burst length", count)?;
             FaultKind::Burst(share(p)?, count)
         }
     })

@@ -6,5 +6,5 @@ mod fault;
 mod lockstep;
 
 pub use channel::{Channel, Delivery};
-pub use fault::{Direction, Fault, FaultKind, Window};
+pub use fault::{BURST, DELAY_MS, Direction, Fault, FaultKind, SHARE, Window};
 pub use lockstep::{Expect, LockStep, Peer};

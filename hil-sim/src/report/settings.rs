@@ -99,7 +99,7 @@ fn gain(gain: &AxisGain) -> String {
 
 fn reference(level: &LevelSpec) -> String {
     let (kind, turn) = match &level.reference {
-        ReferenceSpec::Hold => return "held".to_string(),
+        ReferenceSpec::Hold {} => return "held".to_string(),
         ReferenceSpec::Move { by_m, duration_s } => {
             return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
         }

@@ -8,8 +8,8 @@ use std::thread;
 
 use crate::robot::Robot;
 use crate::sample::Stop;
-use cell::invalid::{Invalid, positive};
-use cell::ranges::DURATION_MAX_S;
+use cell::invalid::Invalid;
+use cell::ranges::{DURATION_S, Range};
 use cell::scenario::PointSpec;
 use cell::terminal::tell;
 
@@ -17,8 +17,8 @@ use cell::terminal::tell;
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \
                     drives off|on, quit";
 
-/// Largest force that can be typed \[N\].
-const FORCE_MAX_N: f64 = 1000.0;
+/// A coordinate of a force that can be typed \[N\].
+const FORCE_N: Range<f64> = Range::new(-1000.0, 1000.0);
 
 /// What a line asks for.
 #[derive(Clone, Debug)]
@@ -46,18 +46,14 @@ impl Wish {
                 let point = PointSpec::Name(point.to_string());
                 point.validate()?;
                 let number = |text: &str| {
-                    let value = text.parse::<f64>().ok();
-                    let bound = value.filter(|value| value.abs() <= FORCE_MAX_N);
-                    bound.ok_or_else(|| {
-                        let allowed = format_args!("-{FORCE_MAX_N} to {FORCE_MAX_N} N").to_string();
-                        Invalid::new("force", text, allowed)
-                    })
+                    let value = text.parse().ok().filter(|value| FORCE_N.contains(*value));
+                    value.ok_or_else(|| Invalid::new("force", text, format_args!("{FORCE_N} N")))
                 };
                 let force = [number(x)?, number(y)?, number(z)?];
                 let seconds = seconds
                     .parse()
                     .map_err(|_| Invalid::new("seconds", seconds, "a number"))?;
-                Self::Push(point, force, positive("seconds", seconds, DURATION_MAX_S)?)
+                Self::Push(point, force, DURATION_S.check("seconds", seconds)?)
             }
             ["release"] => Self::Release,
             ["drives", "on"] => Self::Drives(true),
