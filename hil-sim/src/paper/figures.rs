@@ -64,7 +64,7 @@ fn errors(
         format!("Task error \u{2013} {scenario}, realistic arm, pushed"),
         "Task error of every level over time, one line per controller.",
     );
-    let strokes = [Stroke::Solid, Stroke::Thin, Stroke::Thin];
+    let strokes = [Stroke::Solid, Stroke::Thin, Stroke::Thin, Stroke::Thin];
     for (level, figures) in first.summary.levels.iter().enumerate() {
         // The product last: its line lies on top.
         let lines = (0..controllers.len()).rev().map(|k| {
