@@ -98,6 +98,17 @@ choices! {
         STRATUM_POSTURE_INTEGRAL_UNCOUPLED = 2,
             "the integral of the task motion, without coupling";
     }
+    /// What a cycle is part of; a fault is latched from STRATUM_MODE_BRAKING on.
+    MODES: StratumMode {
+        STRATUM_MODE_RUNNING = 0, "the law moves the arm";
+        STRATUM_MODE_LIMITED = 1, "the law moves the arm, and a limit was active";
+        STRATUM_MODE_BRAKING = 2, "a fault, and the arm moves: it is braked";
+        STRATUM_MODE_RESTING = 3, "a fault, and the arm rests: it is held by gravity torque";
+        STRATUM_MODE_BLIND = 4,
+            "a fault, and no measurement can be followed: the torque fades, the drives should \
+             close their brakes";
+        STRATUM_MODE_STOPPED = 5, "the torque has faded to zero; only a reset leads out";
+    }
     /// What a reference asks of its level.
     TARGET_KINDS: StratumTargetKind {
         STRATUM_TARGET_HOLD = 0,

@@ -322,13 +322,17 @@ pub unsafe extern "C" fn stratum_status(
     // SAFETY: the contract of the header.
     code(unsafe { border::held(state) }.and_then(|held| {
         let Status {
+            mode,
             fault,
             saturated,
             rank,
+            rate_limited,
         } = held.step.status;
         let mut answer = StratumStatus {
             saturated: u32::from(saturated.0),
             rank: u32::from(rank.0),
+            torque_rate: u32::from(rate_limited.0),
+            mode: u32::from(mode.number()),
             ..StratumStatus::default()
         };
         if let Some(fault) = fault {

@@ -28,7 +28,7 @@ use crate::constants::{
 use crate::scalar::Scalar;
 
 /// The version of the interface: numbers, structs and functions of this header.
-pub const STRATUM_ABI_VERSION: u32 = 2;
+pub const STRATUM_ABI_VERSION: u32 = 3;
 /// Joints of an arm.
 pub const STRATUM_JOINTS: usize = 7;
 /// Most levels.
@@ -58,6 +58,10 @@ pub struct StratumLink {
     pub speed_limit: f64,
     /// Largest |torque|, Nm.
     pub torque_limit: f64,
+    /// Largest change of the torque while the law runs, Nm/s.
+    pub torque_rate_limit: f64,
+    /// The same while the arm is braked after a fault, Nm/s.
+    pub brake_rate_limit: f64,
 }
 
 /// Tables of an arm.
@@ -127,7 +131,7 @@ pub struct StratumSettings {
 }
 
 /// sizeof(StratumSettings).
-pub const STRATUM_SETTINGS_SIZE: usize = 3104;
+pub const STRATUM_SETTINGS_SIZE: usize = 3216;
 const _: () = assert!(size_of::<StratumSettings>() == STRATUM_SETTINGS_SIZE);
 const _: () = assert!(STRATUM_JOINTS == DOF && STRATUM_LEVELS == MAX_LEVELS);
 
@@ -203,6 +207,8 @@ impl From<&LinkParameters> for StratumLink {
             position_limit: link.position_limit,
             speed_limit: link.speed_limit,
             torque_limit: link.torque_limit,
+            torque_rate_limit: link.torque_rate_limit,
+            brake_rate_limit: link.brake_rate_limit,
         }
     }
 }
@@ -219,6 +225,8 @@ impl StratumLink {
             position_limit: self.position_limit,
             speed_limit: self.speed_limit,
             torque_limit: self.torque_limit,
+            torque_rate_limit: self.torque_rate_limit,
+            brake_rate_limit: self.brake_rate_limit,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the library says besides a code.
 
 use crate::codes::StratumResult;
+use crate::constants::StratumMode;
 
 /// A text buffer of this size holds every text.
 pub const STRATUM_TEXT_SIZE: usize = 512;
@@ -24,8 +25,12 @@ pub struct StratumStatus {
     /// STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
     /// leave no motion for them; bit 0 is the first row of level 1.
     pub rank: u32,
+    /// STRATUM_LIMIT_TORQUE_RATE: joints whose torque was cut to its largest change.
+    pub torque_rate: u32,
+    /// What the cycle is part of, STRATUM_MODE_...
+    pub mode: StratumMode,
 }
 
 /// sizeof(StratumStatus).
-pub const STRATUM_STATUS_SIZE: usize = 40;
+pub const STRATUM_STATUS_SIZE: usize = 48;
 const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);

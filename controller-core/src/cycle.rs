@@ -1,6 +1,7 @@
 //! The cycle: what enters it and when it is believed, its stages as one list, every
 //! result as data, what comes out.
 
+mod brake;
 pub mod config;
 mod controller;
 mod data;

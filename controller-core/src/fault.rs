@@ -1,6 +1,6 @@
 //! Three kinds of trouble stay apart. A configuration that cannot be is a
 //! `Result` at construction ([`crate::error::ConfigError`]). A *fault* is latched: the arm is
-//! held by gravity torque until the caller resets it. A *limit* that was active
+//! braked and held ([`Mode`]) until the caller resets it. A *limit* that was active
 //! is a flag of one cycle; its torque is valid.
 //!
 //! Faults and limits have numbers that go over wires and into logs. [`crate::numbers!`]
@@ -30,6 +30,8 @@ macro_rules! numbers {
                     "torque of a joint cut to its limit";
                 Rank = 97, "rank", "RANK",
                     "task row without acceleration: the rows above leave no motion for it";
+                TorqueRate = 98, "torque_rate", "TORQUE_RATE",
+                    "torque of a joint cut to its largest change per cycle";
             }
         }
     };
@@ -218,26 +220,105 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
+/// What a cycle is part of. Only the first two are without a fault.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+#[non_exhaustive]
+#[repr(u8)]
+pub enum Mode {
+    /// The law moves the arm.
+    #[default]
+    Running = 0,
+    /// The law moves the arm, and a limit was active.
+    Limited = 1,
+    /// A fault is latched and the arm moves: g(q) - c M dq.
+    Braking = 2,
+    /// A fault is latched and the arm rests: the same torque, which is g(q) at rest.
+    Resting = 3,
+    /// A fault is latched and no measurement can be followed: the last believed gravity
+    /// torque fades. The drives should close their brakes now.
+    Blind = 4,
+    /// The torque has faded to zero; only a reset leads out.
+    Stopped = 5,
+}
+
+impl Mode {
+    /// All of them, by number.
+    pub const ALL: &[Self] = &[
+        Self::Running,
+        Self::Limited,
+        Self::Braking,
+        Self::Resting,
+        Self::Blind,
+        Self::Stopped,
+    ];
+
+    /// Its stable number.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        self as u8
+    }
+
+    /// The name used in logs and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Running => "running",
+            Self::Limited => "limited",
+            Self::Braking => "braking",
+            Self::Resting => "resting",
+            Self::Blind => "blind",
+            Self::Stopped => "stopped",
+        }
+    }
+}
+
 /// What limited or degraded one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
 pub struct Status {
-    /// The latched fault: the torque is the gravity torque of the last
-    /// plausible posture.
+    /// What the cycle is part of.
+    pub mode: Mode,
+    /// The latched fault: the arm is braked, see [`Mode`].
     pub fault: Option<Fault>,
     /// Joints of [`LimitKind::Saturated`].
     pub saturated: IndexSet,
     /// Task rows of [`LimitKind::Rank`].
     pub rank: IndexSet,
+    /// Joints of [`LimitKind::TorqueRate`].
+    pub rate_limited: IndexSet,
 }
 
 impl Status {
     /// No limit, no fault.
     pub const CLEAR: Self = Self {
+        mode: Mode::Running,
         fault: None,
         saturated: IndexSet::NONE,
         rank: IndexSet::NONE,
+        rate_limited: IndexSet::NONE,
     };
+
+    /// A cycle without a fault, with the limits that were active.
+    #[inline(always)]
+    pub(crate) const fn running(
+        saturated: IndexSet,
+        rank: IndexSet,
+        rate_limited: IndexSet,
+    ) -> Self {
+        let limited = saturated.0 | rank.0 | rate_limited.0 != 0;
+        Self {
+            mode: if limited {
+                Mode::Limited
+            } else {
+                Mode::Running
+            },
+            fault: None,
+            saturated,
+            rank,
+            rate_limited,
+        }
+    }
 
     /// Nothing limited the cycle and there is no fault.
     #[must_use]
@@ -250,6 +331,7 @@ impl Status {
         let active = [
             (LimitKind::Saturated, self.saturated),
             (LimitKind::Rank, self.rank),
+            (LimitKind::TorqueRate, self.rate_limited),
         ];
         active
             .into_iter()

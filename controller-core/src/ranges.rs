@@ -36,6 +36,23 @@ pub const INTERVAL_FACTORS: [f64; 2] = [0.5, 20.0];
 /// Norms between which a desired orientation is believed to be a quaternion.
 pub const QUATERNION_NORMS: [f64; 2] = [0.5, 2.0];
 
+/// c of the torque g - c M dq that brakes an arm with a fault \[1/s\].
+pub const BRAKE_RATE: f64 = 60.0;
+
+/// Largest h c of it, as a share of what the dead time allows
+/// ([`sampling::bound`](crate::law::sampling::bound), 2 without): below 1/2 where h is all.
+pub const BRAKE_DECAY_BOUND: f64 = 0.24;
+
+/// An arm with a fault rests once every joint is slower \[rad/s\].
+pub const RESTING_SPEED: f64 = 0.02;
+
+/// An arm that rested moves again once a joint is faster \[rad/s\].
+pub const MOVING_SPEED: f64 = 0.05;
+
+/// Time in which the torque of an arm with a fault goes to zero when no measurement can be
+/// followed any more \[s\]: the drives' own brakes close in less.
+pub const BLIND_FADE_S: f64 = 0.5;
+
 /// Largest h K of a resolver: the error of a level shrinks without changing its sign.
 pub const RESOLVER_GAIN_BOUND: f64 = 1.0;
 

@@ -21,7 +21,7 @@ use crate::arm::{ArmModel, ArmParameters};
 use crate::cycle::measurement::{Measurement, believe, within};
 use crate::cycle::usable::usable;
 use crate::error::ConfigError;
-use crate::fault::{Fault, IndexSet, Quantity, Status};
+use crate::fault::{Fault, IndexSet, Mode, Quantity, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::hierarchy::Hierarchy;
 use crate::linalg::Cholesky;
@@ -110,6 +110,7 @@ impl<T: Real> ResolverState<T> {
             q: self.commanded,
             dq: zeros(),
             status: Status {
+                mode: Mode::Resting,
                 fault: Some(fault),
                 ..Status::CLEAR
             },
@@ -224,11 +225,7 @@ impl<T: Real> Resolver<T> {
         Resolution {
             q: state.commanded,
             dq,
-            status: Status {
-                fault: None,
-                saturated,
-                rank: state.hierarchy.deficient(),
-            },
+            status: Status::running(saturated, state.hierarchy.deficient(), IndexSet::NONE),
         }
     }
 }

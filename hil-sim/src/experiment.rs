@@ -8,6 +8,7 @@ use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
 use controller_core::{Controller, Measurement};
 
+use crate::after_fault::Watch;
 use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::ControllerKind;
@@ -143,12 +144,23 @@ impl Experiment {
         let limits = controller.arm().position_limit();
         let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
         let mut stop = None;
+        let mut watch: Option<Watch> = None;
+        let mut last_torque = None;
 
-        for cycle in 0..cycles {
+        for cycle in 0.. {
             let t_s = cycle as f64 * cycle_s;
+            let over = match &watch {
+                None => cycle >= cycles,
+                Some(watch) => watch.is_over(t_s),
+            };
+            if over {
+                break;
+            }
             let truth = *plant.state();
-            stop = UnsafeMotion::of(&truth, controller.arm().speed_limit()).map(Stop::Unsafe);
-            if stop.is_some() {
+            let unsafe_motion = UnsafeMotion::of(&truth, controller.arm().speed_limit());
+            if let Some(motion @ UnsafeMotion::NotFinite { .. }) = unsafe_motion {
+                // Nothing can act on it any more.
+                stop = stop.or(Some(Stop::Unsafe(motion)));
                 break;
             }
             let JointState { q, dq } = plant.measure();
@@ -160,9 +172,16 @@ impl Experiment {
             let reference = scenario.reference(&origins, &scenario.start(), t_s);
             let motors = *plant.motors().unwrap_or(&truth);
             let decision = driver.decide(&measurement, &reference, &motors);
-            stop = decision.fault.map(Stop::Fault);
-            if stop.is_some() {
-                break;
+            let trouble = decision.fault.map(Stop::Fault);
+            let trouble = trouble.or(unsafe_motion.map(Stop::Unsafe));
+            if stop.is_none() && trouble.is_some() {
+                stop = trouble;
+                let change = decision.torque - last_torque.unwrap_or(decision.torque);
+                watch = Some(Watch::new(t_s, &truth, change.amax()));
+            }
+            last_torque = Some(decision.torque);
+            if let Some(watch) = &mut watch {
+                watch.add(t_s, &truth, decision.mode.name());
             }
 
             contacts.take_hold(t_s, plant.model(), &truth);
@@ -187,7 +206,9 @@ impl Experiment {
                 conditioning: decision.view.conditioning,
                 levels,
             };
-            metrics.add(&sample);
+            if watch.is_none() {
+                metrics.add(&sample);
+            }
             sink(&sample)?;
             let Driving { torque, impedance } = &decision.driving;
             plant.advance_with(t_s, torque, impedance, |t, model, state| {
@@ -197,7 +218,11 @@ impl Experiment {
                 progress(cycle as f64 / cycles as f64);
             }
         }
-        Ok(self.summary(&metrics, stop.as_ref()))
+        let summary = self.summary(&metrics, stop.as_ref());
+        Ok(Summary {
+            after_fault: watch.map(|watch| watch.seen()),
+            ..summary
+        })
     }
 
     fn summary(&self, metrics: &Metrics, stop: Option<&Stop>) -> Summary {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use cell::scenario::{Metric, Scenario};
 
+use crate::after_fault::AfterFault;
 use crate::metrics::{
     self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
     TorqueFigures,
@@ -88,6 +89,8 @@ pub struct Summary {
     pub limits: LimitCounts,
     pub faults: FaultCounts,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub after_fault: Option<AfterFault>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<LinkFigures>,
 }
 
@@ -134,6 +137,7 @@ impl Summary {
             hand_force_max_n: has_hands.then_some(metrics.hand_force),
             limits: metrics.limits,
             faults,
+            after_fault: None,
             link: None,
         }
     }

@@ -101,6 +101,8 @@ impl Tables {
                 position_limit: link.position_limit,
                 speed_limit: link.speed_limit,
                 torque_limit: link.torque_limit,
+                torque_rate_limit: 1e4,
+                brake_rate_limit: 1e5,
             }),
         }
     }

@@ -91,17 +91,18 @@ fn numbers_are_unique_in_order_within_their_range_and_stay_what_they_are() {
 /// What a status reports is in the registry: each set of its own kind.
 #[test]
 fn a_status_names_its_limits_by_the_registry() {
-    let with = |saturated, rank| Status {
+    let with = |saturated, rank, rate| Status {
         saturated: IndexSet(saturated),
         rank: IndexSet(rank),
+        rate_limited: IndexSet(rate),
         ..Status::CLEAR
     };
     let numbers = |status: Status| -> Vec<u8> { status.limits().map(LimitKind::number).collect() };
     assert_eq!(numbers(Status::CLEAR), [0; 0]);
-    assert_eq!(numbers(with(1, 0)), [96]);
-    assert_eq!(numbers(with(0, 64)), [97]);
+    assert_eq!(numbers(with(1, 0, 0)), [96]);
+    assert_eq!(numbers(with(0, 64, 0)), [97]);
     assert_eq!(
-        numbers(with(5, 3)),
+        numbers(with(5, 3, 1)),
         LimitKind::ALL.iter().map(|k| *k as u8).collect::<Vec<_>>()
     );
 }

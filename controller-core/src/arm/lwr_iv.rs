@@ -69,6 +69,13 @@ pub const LWR_IV_STIFFNESS: [f64; DOF] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]
 /// Null-space damping D \[Nms/rad\] of the reference experiments on this arm.
 pub const LWR_IV_DAMPING: [f64; DOF] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
 
+/// No limit of the arm: a tighter one behind the law would take from it what it brakes with
+/// near singularities \[Nm/s\].
+const TORQUE_RATE: f64 = 10e3;
+
+/// A limit of 176 Nm within two milliseconds \[Nm/s\].
+const BRAKE_RATE: f64 = 100e3;
+
 /// KUKA LWR IV+ without tool, mounted upright.
 pub const LWR_IV: ArmParameters = ArmParameters {
     name: "lwr_iv",
@@ -86,6 +93,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 170.0_f64.to_radians(),
             speed_limit: 110.0_f64.to_radians(),
             torque_limit: 176.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -108,6 +117,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 120.0_f64.to_radians(),
             speed_limit: 110.0_f64.to_radians(),
             torque_limit: 176.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -130,6 +141,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 170.0_f64.to_radians(),
             speed_limit: 128.0_f64.to_radians(),
             torque_limit: 100.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -152,6 +165,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 120.0_f64.to_radians(),
             speed_limit: 128.0_f64.to_radians(),
             torque_limit: 100.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -174,6 +189,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 170.0_f64.to_radians(),
             speed_limit: 204.0_f64.to_radians(),
             torque_limit: 100.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -196,6 +213,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 120.0_f64.to_radians(),
             speed_limit: 184.0_f64.to_radians(),
             torque_limit: 38.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
             a: 0.0,
@@ -214,6 +233,8 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             position_limit: 170.0_f64.to_radians(),
             speed_limit: 184.0_f64.to_radians(),
             torque_limit: 38.0,
+            torque_rate_limit: TORQUE_RATE,
+            brake_rate_limit: BRAKE_RATE,
         },
     ],
 };

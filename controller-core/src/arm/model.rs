@@ -33,6 +33,8 @@ pub struct ArmModel<T: Real> {
     position_limit: JointVector<T>,
     speed_limit: JointVector<T>,
     torque_limit: JointVector<T>,
+    torque_rate_limit: JointVector<T>,
+    brake_rate_limit: JointVector<T>,
     parameters: ArmParameters,
 }
 
@@ -68,6 +70,8 @@ impl<T: Real> ArmModel<T> {
             position_limit: column(|link| link.position_limit),
             speed_limit: column(|link| link.speed_limit),
             torque_limit: column(|link| link.torque_limit),
+            torque_rate_limit: column(|link| link.torque_rate_limit),
+            brake_rate_limit: column(|link| link.brake_rate_limit),
             parameters: *parameters,
         }
     }
@@ -88,6 +92,18 @@ impl<T: Real> ArmModel<T> {
     #[must_use]
     pub fn torque_limit(&self) -> &JointVector<T> {
         &self.torque_limit
+    }
+
+    /// Largest |change of torque| while the law runs \[Nm/s\] per joint.
+    #[must_use]
+    pub fn torque_rate_limit(&self) -> &JointVector<T> {
+        &self.torque_rate_limit
+    }
+
+    /// The same while the arm is braked after a fault \[Nm/s\].
+    #[must_use]
+    pub fn brake_rate_limit(&self) -> &JointVector<T> {
+        &self.brake_rate_limit
     }
 
     /// The tables this model was made from.

@@ -26,6 +26,11 @@ pub struct LinkParameters {
     pub speed_limit: f64,
     /// Largest |torque| \[Nm\].
     pub torque_limit: f64,
+    /// Largest change of the torque while the law runs \[Nm/s\]: a net below what the drives
+    /// and gears can take, above what motion and contact need.
+    pub torque_rate_limit: f64,
+    /// The same while the arm is braked after a fault \[Nm/s\].
+    pub brake_rate_limit: f64,
 }
 
 /// Tables of a 7-joint arm. Plain `f64` data, usable as a constant.
@@ -148,6 +153,8 @@ pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
             ("position_limit", link.position_limit),
             ("speed_limit", link.speed_limit),
             ("torque_limit", link.torque_limit),
+            ("torque_rate_limit", link.torque_rate_limit),
+            ("brake_rate_limit", link.brake_rate_limit),
         ] {
             finite(number, parameter, &[value])?;
             if value <= 0.0 {

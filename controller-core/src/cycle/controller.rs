@@ -1,5 +1,6 @@
 //! The controller: what is known before the first cycle, validated once.
 
+use super::brake::brake_rate;
 use super::config::ControllerConfig;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
@@ -19,6 +20,12 @@ pub struct Controller<T: Real> {
     pub(super) observer_gain: JointVector<T>,
     pub(super) cycle_s: T,
     pub(super) dead_cycles: u8,
+    /// Largest change of the torque in a cycle that runs \[Nm\].
+    pub(super) torque_step: JointVector<T>,
+    /// The same in a cycle that brakes \[Nm\].
+    pub(super) brake_step: JointVector<T>,
+    /// c of the brake \[1/s\].
+    pub(super) brake_rate: T,
     fastest_mode: DampingRate,
 }
 
@@ -45,13 +52,17 @@ impl<T: Real> Controller<T> {
         config: &ControllerConfig,
         fastest_mode: DampingRate,
     ) -> Self {
+        let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
             levels: Levels::new(&config.tasks),
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
-            cycle_s: T::from_f64(config.cycle_s),
+            cycle_s,
             dead_cycles: config.dead_cycles,
+            torque_step: arm.torque_rate_limit() * cycle_s,
+            brake_step: arm.brake_rate_limit() * cycle_s,
+            brake_rate: T::from_f64(brake_rate(config.cycle_s, config.dead_cycles)),
             fastest_mode,
         }
     }

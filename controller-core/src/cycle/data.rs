@@ -1,6 +1,7 @@
 //! Every named result of one cycle, in the order of the cycle, and what is remembered
 //! for the next one.
 
+use super::brake::Brake;
 use super::delay::Delay;
 use super::measurement::Measurement;
 use super::observer::Observer;
@@ -118,6 +119,10 @@ impl<T: Real> Default for Data<T> {
 pub struct State<T: Real> {
     pub(super) data: Data<T>,
     pub(super) fault: Option<Fault>,
+    pub(super) brake: Brake<T>,
+    /// Whether a measurement was ever followed.
+    pub(super) seen: bool,
+    rate_limited_cycles: u32,
 }
 
 impl<T: Real> State<T> {
@@ -127,7 +132,21 @@ impl<T: Real> State<T> {
         Self {
             data: Data::new(),
             fault: None,
+            brake: Brake::new(),
+            seen: false,
+            rate_limited_cycles: 0,
         }
+    }
+
+    /// Cycles in which the change of a torque was cut, since the state was made.
+    #[must_use]
+    pub fn rate_limited_cycles(&self) -> u32 {
+        self.rate_limited_cycles
+    }
+
+    pub(super) fn count_limits(&mut self) {
+        let limited = u32::from(self.data.allocation.rate_limited.any());
+        self.rate_limited_cycles = self.rate_limited_cycles.saturating_add(limited);
     }
 
     /// Every result of the last cycle.
@@ -145,9 +164,10 @@ impl<T: Real> State<T> {
     /// Tells the observer that `torque` \[Nm\] has acted on the joints since the
     /// last cycle instead of the one it assumes: the torque of that cycle, or
     /// with dead time of so many cycles before. For links that round, scale or
-    /// lose torques; to be called before the next cycle.
+    /// lose torques; to be called before the next cycle, whose torque starts from it.
     pub fn set_applied_torque(&mut self, torque: &JointVector<T>) {
         self.data.observer.set_applied_torque(torque);
+        self.data.allocation.start_from(torque);
     }
 
     /// The next cycle comes after a gap that is too long to be an interval: the

@@ -5,6 +5,7 @@ use super::controller::Controller;
 use super::data::{Data, Input};
 use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
+use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::Posture;
@@ -208,8 +209,11 @@ pub(super) fn torque_demand<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: 
 }
 
 fn allocation<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    data.allocation
-        .update(&data.demand, controller.arm.torque_limit());
+    let limits = TorqueLimits {
+        limit: controller.arm.torque_limit(),
+        step: &controller.torque_step,
+    };
+    data.allocation.update(&data.demand, &limits);
 }
 
 fn observer_input<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {

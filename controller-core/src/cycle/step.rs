@@ -5,7 +5,7 @@ use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
 use super::stages::{StageName, kinematics_at, torque_demand};
 use super::usable::usable;
-use crate::fault::{Fault, Status};
+use crate::fault::Status;
 use crate::joint::{JointState, JointVector, zeros};
 use crate::real::Real;
 use crate::task::Reference;
@@ -19,7 +19,7 @@ pub struct Step<T: Real> {
     /// r \[Nm\], tends to -tau_ext; zero while a fault is latched.
     pub residual: JointVector<T>,
     /// g(q) \[Nm\], contained in the torque: what a robot that compensates
-    /// gravity itself must not be sent. While a fault is latched the torque itself.
+    /// gravity itself must not be sent. While nothing is seen the torque itself.
     pub gravity: JointVector<T>,
     /// C dq \[Nm\], contained in the torque; zero while a fault is latched.
     pub coriolis: JointVector<T>,
@@ -50,8 +50,8 @@ impl<T: Real> Controller<T> {
     }
 
     /// One cycle. Never fails and never panics: with a measurement or reference
-    /// that cannot be true it latches a fault and holds the arm by the gravity
-    /// torque of the last plausible posture (zero torque if there was none).
+    /// that cannot be true it latches a fault and brakes the arm, see
+    /// [`Mode`](crate::fault::Mode).
     #[must_use]
     pub fn step(
         &self,
@@ -78,17 +78,18 @@ impl<T: Real> Controller<T> {
             None => believe(&self.arm, self.cycle_s, measurement)
                 .and_then(|()| usable(reference, &self.levels)),
         };
-        if let Err(fault) = admitted {
-            return state.held(fault);
-        }
         let input = Input {
             measurement,
             reference,
         };
+        if let Err(fault) = admitted {
+            return self.brake(state, &input, fault);
+        }
         self.evaluate_with(&input, &mut state.data, law);
+        state.seen = true;
         match state.data.allocation.fault(&state.data.demand) {
             None => state.answer(),
-            Some(fault) => state.held(fault),
+            Some(fault) => self.brake(state, &input, fault),
         }
     }
 
@@ -132,33 +133,20 @@ impl<T: Real> Controller<T> {
 impl<T: Real> State<T> {
     /// The results of a cycle without a fault.
     #[inline(always)]
-    fn answer(&self) -> Step<T> {
+    fn answer(&mut self) -> Step<T> {
+        self.count_limits();
         let data = &self.data;
+        let allocation = &data.allocation;
         Step {
-            torque: data.allocation.torque,
+            torque: allocation.torque,
             residual: *data.residual(),
             gravity: data.dynamics.gravity,
             coriolis: data.dynamics.coriolis,
-            status: Status {
-                fault: None,
-                saturated: data.allocation.saturated,
-                rank: data.hierarchy.deficient(),
-            },
-        }
-    }
-
-    fn held(&mut self, fault: Fault) -> Step<T> {
-        self.fault = Some(fault);
-        let holding_torque = self.data.holding_torque;
-        Step {
-            torque: holding_torque,
-            residual: zeros(),
-            gravity: holding_torque,
-            coriolis: zeros(),
-            status: Status {
-                fault: Some(fault),
-                ..Status::CLEAR
-            },
+            status: Status::running(
+                allocation.saturated,
+                data.hierarchy.deficient(),
+                allocation.rate_limited,
+            ),
         }
     }
 }

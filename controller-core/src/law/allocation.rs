@@ -5,15 +5,29 @@ use crate::fault::{Fault, FaultKind, IndexSet, Quantity};
 use crate::joint::{DOF, JointVector, all_finite, zeros};
 use crate::real::Real;
 
-/// A torque within the limits of the arm.
+/// A torque within the limits of the arm. It is also what the next one starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allocation<T: Real> {
-    /// Joint torque \[Nm\], each joint cut to its limit; finite where `finite` is true.
+    /// Joint torque \[Nm\], each joint cut to its limit and to its rate; finite where
+    /// `finite` is true.
     pub torque: JointVector<T>,
-    /// Joints that were cut.
+    /// Joints that were cut to their limit.
     pub saturated: IndexSet,
+    /// Joints that were cut to their rate.
+    pub rate_limited: IndexSet,
     /// Whether the demand was finite.
     pub finite: bool,
+    /// Whether `torque` acts now: without a torque to start from the first one is as it is.
+    acts: bool,
+}
+
+/// What an allocation must keep.
+#[derive(Clone, Copy, Debug)]
+pub struct TorqueLimits<'a, T: Real> {
+    /// Largest |torque| \[Nm\].
+    pub limit: &'a JointVector<T>,
+    /// Largest |change| from the torque of the last cycle \[Nm\].
+    pub step: &'a JointVector<T>,
 }
 
 impl<T: Real> Allocation<T> {
@@ -23,22 +37,48 @@ impl<T: Real> Allocation<T> {
         Self {
             torque: zeros(),
             saturated: IndexSet::NONE,
+            rate_limited: IndexSet::NONE,
             finite: true,
+            acts: false,
         }
     }
 
-    /// Cuts each joint to its limit \[Nm\].
+    /// Cuts each joint to its limit, and to its rate from the torque of the last cycle. A
+    /// demand that is not finite leaves that torque as it is.
     #[inline]
-    pub fn update(&mut self, demand: &TorqueDemand<T>, limit: &JointVector<T>) {
+    pub fn update(&mut self, demand: &TorqueDemand<T>, limits: &TorqueLimits<'_, T>) {
         self.finite = all_finite(&demand.0);
-        let mut saturated = IndexSet::NONE;
-        for index in 0..DOF {
-            let torque = demand.0[index];
-            let cut = torque.limited(-limit[index], limit[index]);
-            self.torque[index] = cut;
-            saturated.0 |= u8::from(cut != torque) << index;
+        (self.saturated, self.rate_limited) = (IndexSet::NONE, IndexSet::NONE);
+        if !self.finite {
+            return;
         }
-        self.saturated = saturated;
+        // Farther than any torque where nothing acts yet.
+        let free = if self.acts {
+            T::ZERO
+        } else {
+            T::from_f64(1e30)
+        };
+        for index in 0..DOF {
+            let (demanded, last) = (demand.0[index], self.torque[index]);
+            let (limit, step) = (limits.limit[index], limits.step[index] + free);
+            let cut = demanded.limited(-limit, limit);
+            let torque = cut.limited(last - step, last + step);
+            self.torque[index] = torque;
+            self.saturated.insert_if(index, cut != demanded);
+            self.rate_limited.insert_if(index, torque != cut);
+        }
+        self.acts = true;
+    }
+
+    /// The next torque starts from `acting` \[Nm\].
+    pub fn start_from(&mut self, acting: &JointVector<T>) {
+        self.torque = *acting;
+        self.acts = true;
+    }
+
+    /// The next torque starts from nothing known.
+    pub fn forget(&mut self) {
+        self.acts = false;
     }
 
     /// The fault of a `demand` that was not finite.

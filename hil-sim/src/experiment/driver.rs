@@ -3,6 +3,7 @@
 
 use controller_core::arm::ArmParameters;
 use controller_core::cycle::Data;
+use controller_core::fault::Mode;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
 use controller_core::{Controller, Fault, Measurement, Reference, State};
@@ -19,6 +20,7 @@ pub const RESOLVER_GAIN: f64 = 10.0;
 /// What a cycle decided, and what acts until the next.
 pub(super) struct Decision {
     pub fault: Option<Fault>,
+    pub mode: Mode,
     pub driving: Driving,
     /// All that the motors give at the start of the cycle \[Nm\].
     pub torque: JointVector<f64>,
@@ -115,6 +117,7 @@ impl<'a> TorqueDriver<'a> {
             });
         Decision {
             fault: step.status.fault,
+            mode: step.status.mode,
             driving: Driving {
                 torque: step.torque,
                 impedance: Impedance::NONE,
@@ -184,6 +187,7 @@ impl PositionDriver {
         let limited = Driving { torque, impedance }.limited(motors, &self.torque_limit);
         Decision {
             fault: step.status.fault,
+            mode: step.status.mode,
             driving: limited.driving,
             torque: limited.torque,
             residual: JointVector::zeros(),
