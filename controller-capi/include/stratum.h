@@ -103,6 +103,8 @@ enum {
   STRATUM_LIMIT_SATURATED = 96,
   // Limit: task row without acceleration: the rows above leave no motion for it.
   STRATUM_LIMIT_RANK = 97,
+  // Limit: torque of a joint cut to its largest change per cycle.
+  STRATUM_LIMIT_TORQUE_RATE = 98,
 };
 
 // What a level tracks.
@@ -145,6 +147,24 @@ enum {
   STRATUM_POSTURE_INTEGRAL_UNCOUPLED = 2,
 };
 
+// What a cycle is part of; a fault is latched from STRATUM_MODE_BRAKING on.
+typedef uint32_t StratumMode;
+enum {
+  // The law moves the arm.
+  STRATUM_MODE_RUNNING = 0,
+  // The law moves the arm, and a limit was active.
+  STRATUM_MODE_LIMITED = 1,
+  // A fault, and the arm moves: it is braked.
+  STRATUM_MODE_BRAKING = 2,
+  // A fault, and the arm rests: it is held by gravity torque.
+  STRATUM_MODE_RESTING = 3,
+  // A fault, and no measurement can be followed: the torque fades, the drives should
+  // close their brakes.
+  STRATUM_MODE_BLIND = 4,
+  // The torque has faded to zero; only a reset leads out.
+  STRATUM_MODE_STOPPED = 5,
+};
+
 // What a reference asks of its level.
 typedef uint32_t StratumTargetKind;
 enum {
@@ -179,13 +199,13 @@ enum {
 #define STRATUM_TEXT_SIZE 512
 
 // sizeof(StratumStatus).
-#define STRATUM_STATUS_SIZE 40
+#define STRATUM_STATUS_SIZE 48
 
 // sizeof(StratumReference).
 #define STRATUM_REFERENCE_SIZE 112
 
 // The version of the interface: numbers, structs and functions of this header.
-#define STRATUM_ABI_VERSION 2
+#define STRATUM_ABI_VERSION 3
 
 // Joints of an arm.
 #define STRATUM_JOINTS 7
@@ -194,7 +214,7 @@ enum {
 #define STRATUM_LEVELS 7
 
 // sizeof(StratumSettings).
-#define STRATUM_SETTINGS_SIZE 3104
+#define STRATUM_SETTINGS_SIZE 3216
 
 // Tables of one link and of the joint that moves it, by the standard
 // Denavit-Hartenberg convention.
@@ -218,6 +238,10 @@ typedef struct StratumLink {
   double speed_limit;
   // Largest |torque|, Nm.
   double torque_limit;
+  // Largest change of the torque while the law runs, Nm/s.
+  double torque_rate_limit;
+  // The same while the arm is braked after a fault, Nm/s.
+  double brake_rate_limit;
 } StratumLink;
 
 // Tables of an arm.
@@ -328,6 +352,10 @@ typedef struct StratumStatus {
   // STRATUM_LIMIT_RANK: task rows without acceleration, because the rows above them
   // leave no motion for them; bit 0 is the first row of level 1.
   uint32_t rank;
+  // STRATUM_LIMIT_TORQUE_RATE: joints whose torque was cut to its largest change.
+  uint32_t torque_rate;
+  // What the cycle is part of, STRATUM_MODE_...
+  StratumMode mode;
 } StratumStatus;
 
 #ifdef __cplusplus

@@ -393,7 +393,7 @@ type Case = (fn(&mut StratumSettings), StratumResult, &'static str);
 fn every_refusal_of_settings_names_thing_value_and_allowed() {
     #[rustfmt::skip]
     let cases: [Case; 24] = [
-        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 2"),
+        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 3"),
         (|s| s.level_count = 8, STRATUM_CONFIG_LEVELS, "level_count is 8; allowed 1 to 7"),
         (|s| s.level_count = 0, STRATUM_CONFIG_LEVELS, "level_count is 0; allowed 1 to 7"),
         (|s| s.levels[0].task = 2, STRATUM_CONFIG_CHOICE, "level 1: task is 2; allowed 0 to 1"),

@@ -1,6 +1,7 @@
 //! The controller with everything a board needs around it: one call per cycle.
 
 use controller_core::cycle::record::Recorder;
+use controller_core::fault::Mode;
 use controller_core::joint::{JointVector, zeros};
 use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Reference, State, Step};
@@ -17,6 +18,8 @@ pub struct InterlockedController<T: Real, E, D, H> {
     state: State<T>,
     recorder: Recorder<T, RECORDED>,
     interlock: Interlock<E, D, H>,
+    /// Whether the drives ran in the last cycle.
+    on: bool,
 }
 
 /// What goes to the drives this cycle.
@@ -34,11 +37,15 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> InterlockedController<T, 
     /// Drives off, nothing observed.
     #[must_use]
     pub fn new(controller: Controller<T>, interlock: Interlock<E, D, H>) -> Self {
+        let mut state = State::new();
+        // The drives are off: the first torque starts from none.
+        state.set_applied_torque(&zeros());
         Self {
             controller,
-            state: State::new(),
+            state,
             recorder: Recorder::new(),
             interlock,
+            on: false,
         }
     }
 
@@ -55,7 +62,12 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> InterlockedController<T, 
             .controller
             .step(&mut self.state, measurement, reference);
         self.recorder.push(measurement, &step);
-        match self.interlock.cycle(step.status.fault.is_none()) {
+        // A fault brakes by the drives, unless they are off; blind, only their own brakes
+        // are left.
+        let brakes = self.on && matches!(step.status.mode, Mode::Braking | Mode::Resting);
+        let answer = self.interlock.cycle(step.status.fault.is_none() || brakes);
+        self.on = answer.is_ok();
+        match answer {
             Ok(()) => Output {
                 torque: step.torque,
                 stopped: None,
@@ -77,6 +89,7 @@ impl<T: Real, E: InputPin, D: OutputPin, H: OutputPin> InterlockedController<T, 
     pub fn blind(&mut self) {
         self.state.resume_after_gap();
         self.state.set_applied_torque(&zeros());
+        self.on = false;
         // Not clean: an error whatever the emergency stop says, and the outputs safe.
         let _ = self.interlock.cycle(false);
     }

@@ -189,6 +189,47 @@ fn a_measurement_that_cannot_be_true_stops_the_arm_within_its_cycle() {
     heartbeat.done();
 }
 
+/// A fault of the reference: the measurement is good, so the drives stay on and hold.
+#[test]
+fn a_fault_that_is_seen_is_braked_by_the_drives() {
+    let ready = ReadyScenario::<f64>::new(FixedScenario::TwoLevel).expect("a valid scenario");
+    let interlock = Interlock::new(
+        input(&[HIGH; 4]),
+        output(&[LOW, HIGH, HIGH, HIGH, LOW, LOW]),
+        output(&[LOW, HIGH, LOW, HIGH, LOW, LOW]),
+    );
+    let mut interlocked = InterlockedController::new(ready.controller.clone(), interlock);
+    let good = Measurement {
+        q: ready.origin.posture,
+        dq: JointVector::zeros(),
+        interval_s: CYCLE_S,
+    };
+    let wrong = Reference::hold(2, good.q);
+    interlocked.enable();
+    for cycle in 0..3 {
+        let reference = if cycle == 0 {
+            &ready.reference(0)
+        } else {
+            &wrong
+        };
+        let output = interlocked.cycle(&good, reference);
+        assert_eq!(output.stopped, None);
+        assert_eq!(output.step.status.fault.is_some(), cycle > 0);
+        assert_eq!(output.torque, output.step.torque);
+        assert!(output.torque[1].abs() > 10.0);
+    }
+    // Blind, the drives' own brakes are left.
+    let mut bad = good;
+    bad.q[0] = f64::NAN;
+    let output = interlocked.cycle(&bad, &wrong);
+    assert_eq!(output.stopped, Some(Cause::Controller));
+    assert_eq!(output.torque, JointVector::zeros());
+    let (mut stop, mut drives, mut heartbeat) = interlocked.release();
+    stop.done();
+    drives.done();
+    heartbeat.done();
+}
+
 /// What a board without a planner sends: the arm sinks while the drives are off, and is
 /// held where it is when they are asked for, not where the first measurement was.
 #[test]

@@ -12,12 +12,13 @@ const FAULTS: RangeInclusive<u32> = 32..=95;
 const LIMITS: RangeInclusive<u32> = 96..=159;
 
 /// Published numbers keep their names for ever: this list only grows.
-const PUBLISHED: [(u32, &str); 5] = [
+const PUBLISHED: [(u32, &str); 6] = [
     (32, "implausible"),
     (33, "non_finite_torque"),
     (34, "wrong_target"),
     (96, "saturated"),
     (97, "rank"),
+    (98, "torque_rate"),
 ];
 
 /// A row of the registry.

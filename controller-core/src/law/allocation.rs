@@ -64,8 +64,8 @@ impl<T: Real> Allocation<T> {
             let cut = demanded.limited(-limit, limit);
             let torque = cut.limited(last - step, last + step);
             self.torque[index] = torque;
-            self.saturated.insert_if(index, cut != demanded);
-            self.rate_limited.insert_if(index, torque != cut);
+            self.saturated.0 |= u8::from(cut != demanded) << index;
+            self.rate_limited.0 |= u8::from(torque != cut) << index;
         }
         self.acts = true;
     }

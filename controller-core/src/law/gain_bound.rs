@@ -12,8 +12,6 @@
 //! is the same as larger gains and every pair has a longest cycle.
 
 use crate::error::ConfigError;
-use crate::joint::JointMatrix;
-use crate::linalg::largest_eigenpair;
 use crate::ranges::DEAD_CYCLES_MAX;
 use crate::real::Real;
 use crate::task::Task;
@@ -23,7 +21,7 @@ use crate::task::Task;
 ///
 /// # Errors
 /// The pair of K_p and K_d that the cycle is too long for. Diagonal gains are looked at axis
-/// by axis; of others the extreme eigenvalues are paired, which is never too lenient.
+/// by axis; of others bounds of the eigenvalues are paired, which is never too lenient.
 pub(crate) fn check(
     task: &Task,
     level: usize,
@@ -63,21 +61,21 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// Least and largest eigenvalue of the block of `gain` on the axes in use.
+/// Bounds of the eigenvalues of the block of `gain` on the axes in use, which is positive
+/// definite: none is above the Frobenius norm F, so none is below det / F^(m - 1).
 fn extremes(gain: &[[f64; 3]; 3], used: impl Fn(usize) -> bool) -> [f64; 2] {
-    let block = |i: usize, j: usize| if used(i) && used(j) { gain[i][j] } else { 0.0 };
-    let entry = |i: usize, j: usize| if i < 3 && j < 3 { block(i, j) } else { 0.0 };
-    let (most, _) = largest_eigenpair(&JointMatrix::from_fn(entry));
-    let reversed = |i: usize, j: usize| {
-        let own = if i == j && i < 3 && used(i) {
-            most
-        } else {
-            0.0
-        };
-        own - entry(i, j)
-    };
-    let (span, _) = largest_eigenpair(&JointMatrix::from_fn(reversed));
-    [most - span, most]
+    let (mut squares, mut count) = (0.0, 0);
+    let mut block = nalgebra::Matrix3::identity();
+    for i in (0..3).filter(|&i| used(i)) {
+        count += 1;
+        for j in (0..3).filter(|&j| used(j)) {
+            block[(i, j)] = gain[i][j];
+            squares += gain[i][j] * gain[i][j];
+        }
+    }
+    let most = squares.square_root();
+    let least = (1..count).fold(block.determinant(), |least, _| least / most);
+    [least, most]
 }
 
 /// Coefficients of the polynomial: degree d + 2.
@@ -127,13 +125,11 @@ fn is_stable(stiffness: f64, damping: f64, cycle_s: f64, dead_cycles: u8) -> boo
         if !inside {
             return false;
         }
-        let ratio = first / last;
-        let mut reduced = [0.0; COEFFICIENTS];
-        for (index, value) in reduced.iter_mut().enumerate().take(degree) {
-            let of = |index: usize| p.get(index).copied().unwrap_or(0.0);
+        let (ratio, before) = (first / last, p);
+        for (index, value) in p.iter_mut().enumerate().take(degree) {
+            let of = |index: usize| before.get(index).copied().unwrap_or(0.0);
             *value = of(index + 1) - ratio * of(degree - 1 - index);
         }
-        p = reduced;
         degree -= 1;
     }
     true

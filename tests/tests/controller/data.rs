@@ -237,10 +237,13 @@ fn a_used_state_is_a_fresh_one<T: Real>() {
             assert_eq!(step.status.fault, None);
             flagged += u32::from(step.status.rank.any());
 
+            // What acts goes on behind a reset.
             let mut fresh = State::new();
+            fresh.set_applied_torque(&zeros());
             let expected = run(after, &mut fresh, 71);
             for state in [&mut used, &mut poisoned] {
                 state.reset();
+                state.set_applied_torque(&zeros());
                 let steps = run(after, state, 71);
                 assert_eq!(
                     steps, expected,
@@ -270,8 +273,8 @@ fn a_used_state_is_a_fresh_one_after_the_reset() {
 }
 
 /// Without a reset only what is remembered differs: with no dead time, a constant
-/// posture and no level that holds that is the observer, and without its residual the
-/// demand has the same bits.
+/// posture and no level that holds that is the torque that acts and the observer, and
+/// from the same torque and without the residual the demand has the same bits.
 #[test]
 fn without_a_reset_only_what_is_remembered_differs() {
     let large = controller::<f64>(&configuration(SPLITS[11].1));
@@ -292,6 +295,7 @@ fn without_a_reset_only_what_is_remembered_differs() {
             interval_s: 0.002,
         };
         let steps = [&mut used, &mut fresh].map(|state| {
+            state.set_applied_torque(&zeros());
             small.step_with(state, &measurement, &reference, |_, _, data| {
                 let (dynamics, hierarchy) = (&data.dynamics, &data.hierarchy);
                 let none = JointVector::zeros();

@@ -3,8 +3,8 @@
 use std::cell::Cell;
 
 use controller_core::arm::LWR_IV;
-use controller_core::fault::FaultKind;
-use controller_core::joint::Vector3;
+use controller_core::fault::{FaultKind, Mode};
+use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::task::{Tracked, orientation};
 use controller_core::{Fault, Link, Measurement, Reference, State, Target};
@@ -118,7 +118,7 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
 }
 
 /// Four cycles with wrong numbers: whatever comes in, the torque is finite and
-/// within limits, a fault is latched with the torque it held, and it is there
+/// within limits, a fault is latched and the arm braked, and it is there
 /// exactly when something could not be true.
 fn anything_in_good_torque_out<T: Real>() {
     let controller = controller::<T>(&configuration(&[
@@ -159,7 +159,11 @@ fn anything_in_good_torque_out<T: Real>() {
             match latched {
                 Some((fault, torque)) => {
                     assert_eq!(text(step.status.fault), text(Some(fault)), "latched");
-                    assert_eq!(step.torque, torque, "held");
+                    // 1e5 Nm/s in 2 ms, and the rounding of a sum of such torques.
+                    let change: JointVector<T> = step.torque - torque;
+                    let most = T::from_f64(200.0001);
+                    assert!(change.iter().all(|c| c.magnitude() <= most), "{change}");
+                    assert!(step.status.mode as u8 >= Mode::Braking as u8);
                 }
                 None if step.status.fault.is_some() => {
                     faults.set(faults.get() + 1);
