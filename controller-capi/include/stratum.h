@@ -49,13 +49,12 @@ enum {
   STRATUM_ERROR_TARGET = 11,
   // A position for a level that tracks an orientation, or the other way round.
   STRATUM_ERROR_WRONG_TARGET = 12,
-  // Fault: a measurement or reference that cannot be true; the arm is held by gravity
-  // torque.
+  // Fault: a measurement or reference that cannot be true; the arm is braked and held.
   STRATUM_FAULT_IMPLAUSIBLE = 32,
-  // Fault: the law gave a torque that is not finite; the arm is held by gravity torque.
+  // Fault: the law gave a torque that is not finite; the arm is braked and held.
   STRATUM_FAULT_NON_FINITE_TORQUE = 33,
-  // Fault: a target of another kind than the task of its level; the arm is held by
-  // gravity torque.
+  // Fault: a target of another kind than the task of its level; the arm is braked and
+  // held.
   STRATUM_FAULT_WRONG_TARGET = 34,
   // Settings: refused, see stratum_settings_text.
   STRATUM_CONFIG_OTHER = 128,
@@ -426,7 +425,7 @@ StratumResult stratum_posture_set(struct StratumState *state,
 // One cycle: posture in rad, speeds in rad/s, time since the last measurement in s
 // (the nominal cycle at first); torque in Nm, always finite and within limits.
 // A measurement that cannot be true latches a fault: its number is answered, the
-// torque is the gravity torque of the last plausible posture, until
+// torque brakes the arm and holds it, see STRATUM_MODE_BRAKING and behind, until
 // stratum_reset. On an argument error the torque is zero and the state is as
 // before. q, dq and torque may be the same array.
 StratumResult stratum_step(const struct StratumController *controller,

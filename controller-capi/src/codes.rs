@@ -68,7 +68,7 @@ macro_rules! registry {
         pub const FAULTS: &[Constant] = &[$(Constant {
             number: $fault_number,
             name: c(concat!("STRATUM_FAULT_", $fault_c, "\0")),
-            text: c(concat!("fault: ", $fault_meaning, "; the arm is held by gravity torque\0")),
+            text: c(concat!("fault: ", $fault_meaning, "; the arm is braked and held\0")),
         }),*];
 
         /// The limits of the core.

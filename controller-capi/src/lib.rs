@@ -270,7 +270,7 @@ pub unsafe extern "C" fn stratum_posture_set(
 /// One cycle: posture in rad, speeds in rad/s, time since the last measurement in s
 /// (the nominal cycle at first); torque in Nm, always finite and within limits.
 /// A measurement that cannot be true latches a fault: its number is answered, the
-/// torque is the gravity torque of the last plausible posture, until
+/// torque brakes the arm and holds it, see STRATUM_MODE_BRAKING and behind, until
 /// stratum_reset. On an argument error the torque is zero and the state is as
 /// before. q, dq and torque may be the same array.
 /// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS], [dq;STRATUM_JOINTS], [torque;STRATUM_JOINTS]]

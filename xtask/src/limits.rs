@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn what_is_beyond_a_limit_is_named_with_value_and_limit() {
         let most = 4_352 - STATE;
-        assert!(exceeded(&figures(12_448, Some(most), 56_748)).is_empty());
+        assert!(exceeded(&figures(12_448, Some(most), 66_000)).is_empty());
         assert_eq!(
             exceeded(&figures(12_449, Some(most), 1)),
             ["case-1 f32: cycle, instructions: 12449, limit 12448"]
@@ -122,7 +122,7 @@ mod tests {
         let lost = exceeded(&figures(9_000, None, 1));
         assert_eq!(lost.len(), 12);
         assert!(lost[11].ends_with("bytes: none, limit 12288"), "{lost:?}");
-        assert_eq!(exceeded(&figures(9_000, Some(1), 61_441)).len(), 2);
+        assert_eq!(exceeded(&figures(9_000, Some(1), 72_001)).len(), 2);
         // Ten instructions are too much of a spread here.
         assert_eq!(exceeded(&figures(1_000, Some(1), 1)).len(), 2);
         let mut seen = figures(9_000, Some(1_000), 1);
