@@ -29,7 +29,7 @@ pub use serve::ServeOptions;
     name = "hil-sim",
     version,
     after_help = "Exit codes: 0 pass, 1 an acceptance limit failed, \
-2 usage or configuration error, 3 stopped by safety or by hand, 4 no client."
+2 usage or configuration error, 3 stopped by safety, a signal or by hand, 4 no client."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -11,6 +11,7 @@ use controller_core::{Controller, Measurement};
 use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::ControllerKind;
+use crate::interrupt;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
@@ -147,7 +148,9 @@ impl Experiment {
         for cycle in 0..cycles {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
-            stop = UnsafeMotion::of(&truth, controller.arm().speed_limit()).map(Stop::Unsafe);
+            stop = UnsafeMotion::of(&truth, controller.arm().speed_limit())
+                .map(Stop::Unsafe)
+                .or_else(interrupt::stop);
             if stop.is_some() {
                 break;
             }

@@ -10,9 +10,11 @@ use controller_core::Controller;
 use super::files::Files;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
+use crate::interrupt;
+use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
-use crate::summary::Summary;
+use crate::summary::{Summary, Verdict};
 use cell::arguments::values::{number, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
@@ -78,7 +80,10 @@ impl RunOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
-        let summary = execute(&experiment, &out, Some(&command))?;
+        let controller = experiment.controller()?;
+        let folder = Folder::claim(&out)?;
+        interrupt::heed();
+        let summary = execute(&experiment, &controller, folder, Some(&command))?;
         let mut text = experiment_heading(&experiment);
         text += &table(&[&summary]);
         text += &footer(&summary, &out);
@@ -184,39 +189,54 @@ pub fn comparison() -> Result<u8, Invalid> {
         seed: 1,
         options: PlantOptions::default(),
     };
-    let summary = execute(&product, &out, None)?;
+    let folder = Folder::claim(&out)?;
+    let others = [TorqueLaw::NoObserver, TorqueLaw::AccelerationLevel].map(ControllerKind::from);
+    let folders = others.map(|controller| Folder::claim(&out.join(controller.name())));
+    let folders: Vec<_> = folders.into_iter().collect::<Result<_, _>>()?;
+    interrupt::heed();
+    let summary = execute(&product, &product.controller()?, folder, None)?;
     let mut rows = vec![summary.clone()];
-    for law in [TorqueLaw::NoObserver, TorqueLaw::AccelerationLevel] {
-        let controller = ControllerKind::from(law);
+    for (controller, folder) in others.into_iter().zip(folders) {
+        if interrupt::stop().is_some() {
+            break;
+        }
         let other = Experiment {
             controller,
             ..product.clone()
         };
-        rows.push(execute(&other, &out.join(controller.name()), None)?);
+        rows.push(execute(&other, &other.controller()?, folder, None)?);
     }
     let mut text = experiment_heading(&product);
     text += &table(&rows.iter().collect::<Vec<_>>());
     text += &footer(&summary, &out);
     text += "Only hierarchical has to pass: the others are there for comparison.\n";
     print(&text)?;
-    Ok(summary.verdict.exit_code())
+    let verdict = match interrupt::stop() {
+        Some(_) => Verdict::Stopped,
+        None => summary.verdict,
+    };
+    Ok(verdict.exit_code())
 }
 
 /// Runs an experiment and writes its files.
-fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result<Summary, Invalid> {
+fn execute(
+    experiment: &Experiment,
+    controller: &Controller<f64>,
+    folder: Folder,
+    command: Option<&str>,
+) -> Result<Summary, Invalid> {
     let scenario = &experiment.scenario;
-    let controller = experiment.controller()?;
-    let mut files = Files::create(out, scenario, experiment.contacts)?;
+    let mut files = Files::create(folder, scenario, experiment.contacts)?;
 
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
-        &controller,
+        controller,
         |instant| files.push(scenario, instant),
         |share| progress.show(share),
     );
     progress.clear();
     let summary = written.map_err(|error| files.failed(error))?;
-    warn_of_damping(experiment, &controller);
+    warn_of_damping(experiment, controller);
     files.finish(scenario, &summary, Choices::of(experiment), command)?;
     Ok(summary)
 }

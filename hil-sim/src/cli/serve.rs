@@ -8,6 +8,7 @@ use clap::Args;
 use super::files::Files;
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
+use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
@@ -205,7 +206,7 @@ impl ServeOptions {
             Client::Udp { remote, local_port } => Box::new(Udp::open(*remote, *local_port)?),
             Client::Serial(path) => Box::new(Serial::open(path)?),
         };
-        let mut files = Files::create(&out, &scenario, setup.contacts)?;
+        let mut files = Files::create(Folder::claim(&out)?, &scenario, setup.contacts)?;
         tell(format_args!(
             "robot at the start posture, measurements go to {}; lines on standard input: push, \
              release, drives off|on, quit",
