@@ -28,7 +28,7 @@ pub use serve::ServeOptions;
 #[command(
     name = "hil-sim",
     version,
-    after_help = "Exit codes: 0 pass, 1 an acceptance limit failed, \
+    after_help = "Exit codes: 0 no limit failed, 1 one did or a joint left its range, \
 2 usage or configuration error, 3 stopped by safety, a signal or by hand, 4 no client."
 )]
 struct Cli {

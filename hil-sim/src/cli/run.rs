@@ -317,6 +317,11 @@ pub(super) fn table(runs: &[&Summary]) -> String {
             );
         }
     }
+    for run in runs {
+        for remark in run.remarks() {
+            text += &format!("{}: {remark}\n", run.controller);
+        }
+    }
     text
 }
 
