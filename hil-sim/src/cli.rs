@@ -4,14 +4,15 @@ mod files;
 mod run;
 mod serve;
 
-use std::io::{self, IsTerminal, Read};
-use std::path::PathBuf;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use crate::explain::explain;
 use cell::arguments::usage::{self, USAGE};
+use cell::file;
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
@@ -94,27 +95,27 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn explain_file(file: &std::path::Path) -> Result<String, Invalid> {
+fn explain_file(path: &Path) -> Result<String, Invalid> {
     let readable = |error| {
         Invalid::new(
             "state",
-            file.display(),
+            path.display(),
             format_args!("a readable JSON file, or - ({error})"),
         )
     };
-    let mut text = String::new();
-    if file.as_os_str() == "-" {
+    let text;
+    if path.as_os_str() == "-" {
         if io::stdin().is_terminal() {
             tell("reading the state from standard input; see docs/explain.md for its fields");
         }
-        io::stdin().read_to_string(&mut text).map_err(readable)?;
+        text = file::text_of(io::stdin()).map_err(readable)?;
     } else {
-        text = std::fs::read_to_string(file).map_err(readable)?;
+        text = file::text(path).map_err(readable)?;
     }
-    let place = if file.as_os_str() == "-" {
+    let place = if path.as_os_str() == "-" {
         "standard input".into()
     } else {
-        file.display().to_string()
+        path.display().to_string()
     };
     let output = explain(&text).map_err(|error| error.within(place))?;
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;

@@ -121,6 +121,10 @@ fn a_signal_stops_a_run_and_what_there_is_is_written() {
         signal(&run, name);
         let (code, stderr) = end(run);
         assert_eq!(code, Some(3), "{name}: {stderr}");
+        assert!(
+            stderr.contains("note: trace.csv will have about 1.8 GB"),
+            "{stderr}"
+        );
         let all = ["figures", "report.html", "summary.json", "trace.csv"];
         assert_eq!(names(&out), all, "{name}");
         let summary = summary(&out);

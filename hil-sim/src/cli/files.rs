@@ -5,10 +5,33 @@ use std::io;
 use crate::output::{Draft, Folder};
 use crate::report::{self, Choices, Recording};
 use crate::summary::Summary;
-use crate::trace::Trace;
+use crate::trace::{self, Trace};
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
+use cell::terminal::tell;
 use record::run::Sample;
+
+/// From here on the size of trace.csv is said before a run \[GB\].
+const NOTABLE_GB: f64 = 1.0;
+
+/// Says how large trace.csv will be, where that matters.
+///
+/// # Errors
+/// It would be larger than `most_gb`.
+pub fn announce(scenario: &Scenario, most_gb: f64) -> Result<(), Invalid> {
+    let size_gb = trace::expected_bytes(scenario) / 1e9;
+    if size_gb > most_gb {
+        let given = format!("about {size_gb:.1} GB of {} cycles", scenario.cycles());
+        let allowed = format!("at most {most_gb} GB; see --max-trace-gb");
+        return Err(Invalid::new("trace.csv", given, allowed));
+    }
+    if size_gb > NOTABLE_GB {
+        tell(format_args!(
+            "note: trace.csv will have about {size_gb:.1} GB"
+        ));
+    }
+    Ok(())
+}
 
 /// Files on their way: nothing is seen of them before [`Files::finish`].
 pub struct Files {

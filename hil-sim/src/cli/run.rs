@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use controller_core::Controller;
 
-use super::files::Files;
+use super::files::{Files, announce};
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
 use crate::interrupt;
@@ -18,9 +18,12 @@ use crate::summary::{Summary, Verdict};
 use cell::arguments::values::{number, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
-use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, SEED};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED};
 use cell::scenario::Scenario;
 use cell::terminal::{print, show, tell};
+
+/// Size of a trace \[GB\].
+const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -63,6 +66,9 @@ pub struct RunOptions {
     #[arg(long, value_parser = number(CYCLE_MS),
         help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
+    #[arg(long, default_value = "4", value_parser = number(TRACE_GB),
+        help = format!("Largest trace.csv that may be written, in GB, {TRACE_GB}"))]
+    max_trace_gb: f64,
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -81,6 +87,7 @@ impl RunOptions {
             .clone()
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
         let controller = experiment.controller()?;
+        announce(&experiment.scenario, self.max_trace_gb)?;
         let folder = Folder::claim(&out)?;
         interrupt::heed();
         let summary = execute(&experiment, &controller, folder, Some(&command))?;
@@ -112,6 +119,7 @@ impl RunOptions {
         option("stiction", &self.stiction, "off");
         option("elasticity", &self.elasticity, "off");
         option("seed", &self.seed.to_string(), "1");
+        option("max-trace-gb", &self.max_trace_gb.to_string(), "4");
         for (name, value) in [("duration", self.duration), ("cycle-ms", self.cycle_ms)] {
             if let Some(value) = value {
                 option(name, &value.to_string(), "");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::files::Files;
+use super::files::{Files, announce};
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
 use crate::output::Folder;
@@ -202,6 +202,8 @@ impl ServeOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
+        // By the least cycle and the longest run that the protocol has it stays bounded.
+        announce(&scenario, f64::INFINITY)?;
         let mut client: Box<dyn Transport> = match &service.client {
             Client::Udp { remote, local_port } => Box::new(Udp::open(*remote, *local_port)?),
             Client::Serial(path) => Box::new(Serial::open(path)?),
