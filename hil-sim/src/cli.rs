@@ -1,6 +1,7 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
 mod files;
+mod notes;
 mod run;
 mod serve;
 

@@ -10,6 +10,7 @@ use serde_json::Value;
 struct Said {
     code: Option<i32>,
     text: String,
+    notes: String,
     summary: Value,
     report: String,
 }
@@ -31,6 +32,7 @@ fn run(scenario: &str, options: &str) -> Said {
     Said {
         code: output.status.code(),
         text: String::from_utf8(output.stdout.clone()).expect("text"),
+        notes: String::from_utf8(output.stderr.clone()).expect("text"),
         summary: serde_json::from_str(&read("summary.json")).expect("JSON"),
         report: read("report.html"),
     }
@@ -149,4 +151,21 @@ fn what_did_not_come_is_not_judged() {
     let moved = "kind = 'move'\nby_m = [0.0, 0.1, 0.0]\nduration_s = 1.0";
     let said = run(&scenario(BENT, "position", moved, &strict), "");
     assert_eq!(said.code, Some(1), "{}", said.text);
+}
+
+/// The finding of docs/errata.md, 8, is said before it costs a run.
+#[test]
+fn a_posture_that_drifts_is_announced_with_how_far() {
+    let circle = "kind = 'circle'\nplane = 'yz'\nradius_m = 0.1\nperiod_s = 6.0\ngrowth_s = 2.0";
+    let own = scenario(BENT, "position", circle, "");
+    let said = run(&own, "--duration 1");
+    assert!(!said.notes.contains("drifts"), "{}", said.notes);
+    let own = own.replace("[observer]", "posture = 'integral-coupled'\n[observer]");
+    let said = run(&own, "--duration 20");
+    assert_eq!(said.code, Some(3), "{}", said.text);
+    let note = "note: posture integral-coupled drifts: on an ideal arm without contacts joint 5 \
+                travels 233 deg in 7.6 s; joint 6 leaves its range at 7.0 s";
+    assert!(said.notes.contains(note), "{}", said.notes);
+    let said = run(&own, "--duration 1 --controller velocity-level");
+    assert!(!said.notes.contains("drifts"), "{}", said.notes);
 }

@@ -8,6 +8,7 @@ use clap::Args;
 use controller_core::Controller;
 
 use super::files::{Files, announce};
+use super::notes;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
 use crate::interrupt;
@@ -20,7 +21,7 @@ use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED};
 use cell::scenario::Scenario;
-use cell::terminal::{print, show, tell};
+use cell::terminal::{print, show};
 
 /// Size of a trace \[GB\].
 const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
@@ -236,6 +237,7 @@ fn execute(
     let scenario = &experiment.scenario;
     let mut files = Files::create(folder, scenario, experiment.contacts)?;
 
+    notes::tell_all(experiment, controller);
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
         controller,
@@ -244,27 +246,8 @@ fn execute(
     );
     progress.clear();
     let summary = written.map_err(|error| files.failed(error))?;
-    warn_of_damping(experiment, controller);
     files.finish(scenario, &summary, Choices::of(experiment), command)?;
     Ok(summary)
-}
-
-/// A damping above half its bound works, but says so.
-fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
-    let dead_cycles = experiment.options.dead_cycles as u8;
-    let Ok(config) = experiment.scenario.controller_config(dead_cycles) else {
-        return;
-    };
-    let bound = config.damping_bound();
-    let mode = controller.fastest_mode();
-    let value = mode.rate * experiment.scenario.cycle_s();
-    if value > bound / 2.0 && experiment.controller == TorqueLaw::Hierarchical.into() {
-        tell(format_args!(
-            "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
-             (joint {}, stretched postures)",
-            mode.joint
-        ));
-    }
 }
 
 fn experiment_heading(experiment: &Experiment) -> String {
