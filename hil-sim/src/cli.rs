@@ -104,21 +104,15 @@ fn explain_file(path: &Path) -> Result<String, Invalid> {
             format_args!("a readable JSON file, or - ({error})"),
         )
     };
-    let text;
-    if path.as_os_str() == "-" {
-        if io::stdin().is_terminal() {
-            tell("reading the state from standard input; see docs/explain.md for its fields");
-        }
-        text = file::text_of(io::stdin()).map_err(readable)?;
-    } else {
-        text = file::text(path).map_err(readable)?;
+    let by_hand = path.as_os_str() == "-";
+    if by_hand && io::stdin().is_terminal() {
+        tell("reading the state from standard input; see docs/explain.md for its fields");
     }
-    let place = if path.as_os_str() == "-" {
-        "standard input".into()
-    } else {
-        path.display().to_string()
+    let (text, place) = match by_hand {
+        true => (file::text_of(io::stdin()), "standard input".into()),
+        false => (file::text(path), path.display().to_string()),
     };
-    let output = explain(&text).map_err(|error| error.within(place))?;
+    let output = explain(&text.map_err(readable)?).map_err(|error| error.within(place))?;
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;
     json.push('\n');
     Ok(json)
