@@ -1,7 +1,7 @@
 //! Errors of what a user typed or wrote: one line that names the thing, the
 //! value and what is allowed.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 /// Something given from outside that cannot be used. Exit code 2.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,6 +12,10 @@ pub struct Invalid {
     /// The value's key there, where there is one.
     key: Option<String>,
 }
+
+/// Most letters of a value that are shown, and of a line.
+const VALUE: usize = 300;
+const LINE: usize = 1200;
 
 /// A step on the way to a value in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +34,7 @@ impl Invalid {
         value: impl fmt::Display,
         allowed: impl fmt::Display,
     ) -> Self {
-        let thing = thing.to_string();
+        let (thing, value) = (thing.to_string(), shortened(value.to_string(), VALUE));
         Self {
             key: thing.split(' ').next().map(String::from),
             ..Self::line(format_args!("{thing}: {value}; allowed: {allowed}"))
@@ -39,14 +43,8 @@ impl Invalid {
 
     /// A sentence that already says all three.
     pub fn line(text: impl fmt::Display) -> Self {
-        // A value may carry line breaks of its own: keep the error one line.
-        let text = text
-            .to_string()
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ");
         Self {
-            text,
+            text: text.to_string(),
             place: Vec::new(),
             key: None,
         }
@@ -73,6 +71,7 @@ impl Invalid {
     /// The same where the place already says what it is.
     #[must_use]
     pub fn unknown(given: &str, known: &[&str]) -> Self {
+        let given = &shortened(given.to_string(), VALUE);
         let nearest = match nearest(given, known) {
             Some(name) => format!(", did you mean '{name}'?"),
             None => ";".to_string(),
@@ -117,8 +116,10 @@ impl Invalid {
     }
 }
 
-impl fmt::Display for Invalid {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Invalid {
+    /// The way to the value and the sentence, as they came.
+    fn sentence(&self) -> Result<String, fmt::Error> {
+        let mut f = String::new();
         for (number, step) in self.place.iter().enumerate() {
             match step {
                 Segment::Key(key) if number == 0 => f.write_str(key)?,
@@ -127,8 +128,45 @@ impl fmt::Display for Invalid {
             }
         }
         let gap = if self.place.is_empty() { "" } else { ": " };
-        write!(f, "{gap}{}", self.text)
+        write!(f, "{gap}{}", self.text)?;
+        Ok(f)
     }
+}
+
+impl fmt::Display for Invalid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A value may carry line breaks of its own, or orders for the terminal.
+        let text = shortened(self.sentence()?, LINE);
+        for (number, word) in text.split_whitespace().enumerate() {
+            f.write_str(if number == 0 { "" } else { " " })?;
+            for letter in word.chars() {
+                match obeyed(letter) {
+                    true => write!(f, "{}", letter.escape_unicode())?,
+                    false => f.write_char(letter)?,
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a terminal obeys the letter instead of showing it: control characters, and
+/// marks that turn the direction of the text.
+fn obeyed(letter: char) -> bool {
+    let turns = matches!(letter, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}'
+        | '\u{2066}'..='\u{2069}');
+    letter.is_control() || turns
+}
+
+/// A text without its middle where it is longer than `most` letters.
+fn shortened(text: String, most: usize) -> String {
+    let length = text.chars().count();
+    if length <= most {
+        return text;
+    }
+    let head: String = text.chars().take(most * 2 / 3).collect();
+    let tail: String = text.chars().skip(length - most / 3).collect();
+    format!("{head} [.. {length} letters ..] {tail}")
 }
 
 impl std::error::Error for Invalid {}
@@ -149,6 +187,28 @@ fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn values_are_shown_and_not_obeyed() {
+        let error = Invalid::new("name", "a\u{1b}[31m\u{7}b\u{202e}c", "letters");
+        let shown = r"name: a\u{1b}[31m\u{7}b\u{202e}c; allowed: letters";
+        assert_eq!(error.to_string(), shown);
+        assert_eq!(error.within("file").to_string(), format!("file: {shown}"));
+    }
+
+    #[test]
+    fn long_values_are_cut_and_what_is_allowed_is_not() {
+        let long = "\u{e4}".repeat(3_000_000);
+        for error in [
+            Invalid::new("name", &long, "letters"),
+            Invalid::name("name", &long, &["letters"]),
+            Invalid::line(format_args!("name: {long}; allowed: letters")).within(&long),
+        ] {
+            let text = error.to_string();
+            assert!(text.chars().count() < 1300, "{}", text.len());
+            assert!(text.contains("letters ..]") && text.ends_with("allowed: letters"));
+        }
+    }
 
     #[test]
     fn errors_are_one_line_and_suggest_the_nearest_name() {

@@ -3,9 +3,11 @@
 //!
 //! Bottom-up: [`invalid`], errors for people; [`terminal`], what is printed;
 //! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of
-//! options and usage errors; [`reader`], files; [`scenario`], an experiment as a file.
+//! options and usage errors; [`mod@file`] and [`reader`], texts and what they say;
+//! [`scenario`], an experiment as a file.
 
 pub mod arguments;
+pub mod file;
 pub mod invalid;
 pub mod names;
 pub mod ranges;

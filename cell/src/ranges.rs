@@ -96,6 +96,9 @@ pub const SEED: Range<u64> = Range::new(0, u64::MAX);
 /// Time that a program waits for the other \[s\].
 pub const WAIT_S: Range<f64> = Range::above(0.0, 1e6);
 
+/// Length of a scenario's name, which is also that of a folder.
+pub const NAME_LETTERS: Range<usize> = Range::new(1, 64);
+
 /// Number of task levels.
 pub const LEVELS: Range<usize> = Range::new(1, MAX_LEVELS);
 

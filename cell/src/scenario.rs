@@ -23,7 +23,7 @@ use serde::Deserialize;
 use crate::invalid::Invalid;
 use crate::names::{MeasurementKind, Named, PlantKind};
 use crate::ranges::{
-    CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, RATE_GAIN, ROWS, Range,
+    CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, NAME_LETTERS, RATE_GAIN, ROWS, Range,
 };
 use crate::reader;
 
@@ -164,7 +164,7 @@ impl Scenario {
             let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
             return Err(Invalid::name("scenario", name, &known));
         }
-        let text = std::fs::read_to_string(name).map_err(|error| {
+        let text = crate::file::text(Path::new(name)).map_err(|error| {
             Invalid::new(
                 "scenario file",
                 name,
@@ -200,12 +200,9 @@ impl Scenario {
     /// The first key that cannot be used.
     pub fn validate(&self) -> Result<(), Invalid> {
         let simple = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if self.name.is_empty() || !self.name.chars().all(simple) {
-            return Err(Invalid::new(
-                "name",
-                &self.name,
-                "letters, digits, '-' and '_'",
-            ));
+        if !NAME_LETTERS.contains(self.name.len()) || !self.name.chars().all(simple) {
+            let allowed = format!("{NAME_LETTERS} letters, digits, '-' and '_'");
+            return Err(Invalid::new("name", &self.name, allowed));
         }
         if self.robot != LWR_IV.name {
             return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));

@@ -303,15 +303,16 @@ impl RunOptions {
             ("--record", self.record.as_deref()),
             ("--flight-record", Some(self.flight_record.as_path())),
         ];
-        let mut known: Vec<(&str, &Path)> = Vec::new();
+        let mut known: Vec<(&str, PathBuf)> = Vec::new();
         for (option, path) in files {
             let Some(path) = path else { continue };
-            if let Some((other, _)) = known.iter().find(|(_, other)| *other == path) {
+            prepare(path)?;
+            let place = place(path).map_err(|error| unwritable(path, &error))?;
+            if let Some((other, _)) = known.iter().find(|(_, other)| *other == place) {
                 let allowed = format!("another file than that of {other}");
                 return Err(Invalid::new(option, path.display(), allowed));
             }
-            prepare(path)?;
-            known.push((option, path));
+            known.push((option, place));
         }
         Ok(())
     }
@@ -384,6 +385,16 @@ fn prepare(path: &Path) -> Result<(), Invalid> {
         std::fs::remove_file(path).map_err(|error| unwritable(path, &error))?;
     }
     Ok(())
+}
+
+/// Where a file is or will be, whatever way its name goes; its folder is there.
+fn place(path: &Path) -> std::io::Result<PathBuf> {
+    if path.exists() {
+        return path.canonicalize();
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let folder = Path::new(".").join(folder).canonicalize()?;
+    Ok(folder.join(path.file_name().unwrap_or_default()))
 }
 
 /// The last cycles, in a ring that is taken once.

@@ -41,8 +41,40 @@ const BAD: &[(&[&str], &[&str])] = &[
     (&["run", "--cpu", "-1"], &["--cpu", "'-1'", "whole numbers"]),
     (&["run", "--dry=1"], &["--dry", "'1'", "no value"]),
     (
-        &["run", "--summary", "a", "--record", "a"],
+        &[
+            "run",
+            "--listen",
+            "127.0.0.1:0",
+            "--summary",
+            "a",
+            "--record",
+            "a",
+        ],
         &["--record: a", "another file than that of --summary"],
+    ),
+    (
+        &[
+            "run",
+            "--listen",
+            "127.0.0.1:0",
+            "--summary",
+            "a",
+            "--record",
+            "./a",
+        ],
+        &["--record: ./a", "another file than that of --summary"],
+    ),
+    (
+        &[
+            "run",
+            "--listen",
+            "127.0.0.1:0",
+            "--record",
+            "a",
+            "--flight-record",
+            "./a",
+        ],
+        &["--flight-record: ./a", "another file than that of --record"],
     ),
     (
         &["run", "--duration", "0"],
@@ -82,11 +114,23 @@ const BAD: &[(&[&str], &[&str])] = &[
         &["--reference-timeout-ms", "above 0"],
     ),
     (
-        &["run", "--record", "/proc/none/r.csv"],
+        &[
+            "run",
+            "--listen",
+            "127.0.0.1:0",
+            "--record",
+            "/proc/none/r.csv",
+        ],
         &["/proc/none/r.csv", "can be written"],
     ),
     (
-        &["run", "--summary", "/proc/none/s.json"],
+        &[
+            "run",
+            "--listen",
+            "127.0.0.1:0",
+            "--summary",
+            "/proc/none/s.json",
+        ],
         &["/proc/none/s.json"],
     ),
     (&["doctor", "--cycle-ms", "0"], &["--cycle-ms", "0.1 to 20"]),

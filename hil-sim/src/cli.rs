@@ -1,17 +1,19 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
 mod files;
+mod notes;
 mod run;
 mod serve;
 
-use std::io::{self, IsTerminal, Read};
-use std::path::PathBuf;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
 use crate::explain::explain;
 use cell::arguments::usage::{self, USAGE};
+use cell::file;
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
@@ -28,8 +30,8 @@ pub use serve::ServeOptions;
 #[command(
     name = "hil-sim",
     version,
-    after_help = "Exit codes: 0 pass, 1 an acceptance limit failed, \
-2 usage or configuration error, 3 stopped by safety or by hand, 4 no client."
+    after_help = "Exit codes: 0 no limit failed, 1 one did or a joint left its range, \
+2 usage or configuration error, 3 stopped by safety, a signal or by hand, 4 no client."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -94,29 +96,23 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn explain_file(file: &std::path::Path) -> Result<String, Invalid> {
+fn explain_file(path: &Path) -> Result<String, Invalid> {
     let readable = |error| {
         Invalid::new(
             "state",
-            file.display(),
+            path.display(),
             format_args!("a readable JSON file, or - ({error})"),
         )
     };
-    let mut text = String::new();
-    if file.as_os_str() == "-" {
-        if io::stdin().is_terminal() {
-            tell("reading the state from standard input; see docs/explain.md for its fields");
-        }
-        io::stdin().read_to_string(&mut text).map_err(readable)?;
-    } else {
-        text = std::fs::read_to_string(file).map_err(readable)?;
+    let by_hand = path.as_os_str() == "-";
+    if by_hand && io::stdin().is_terminal() {
+        tell("reading the state from standard input; see docs/explain.md for its fields");
     }
-    let place = if file.as_os_str() == "-" {
-        "standard input".into()
-    } else {
-        file.display().to_string()
+    let (text, place) = match by_hand {
+        true => (file::text_of(io::stdin()), "standard input".into()),
+        false => (file::text(path), path.display().to_string()),
     };
-    let output = explain(&text).map_err(|error| error.within(place))?;
+    let output = explain(&text.map_err(readable)?).map_err(|error| error.within(place))?;
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;
     json.push('\n');
     Ok(json)

@@ -12,6 +12,7 @@ use crate::after_fault::Watch;
 use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::ControllerKind;
+use crate::interrupt;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
@@ -158,9 +159,12 @@ impl Experiment {
             }
             let truth = *plant.state();
             let unsafe_motion = UnsafeMotion::of(&truth, controller.arm().speed_limit());
-            if let Some(motion @ UnsafeMotion::NotFinite { .. }) = unsafe_motion {
-                // Nothing can act on it any more.
-                stop = stop.or(Some(Stop::Unsafe(motion)));
+            let lost =
+                unsafe_motion.filter(|motion| matches!(motion, UnsafeMotion::NotFinite { .. }));
+            // Nothing can act on it any more, or nobody wants to.
+            let ended = lost.map(Stop::Unsafe).or_else(interrupt::stop);
+            if ended.is_some() {
+                stop = stop.or(ended);
                 break;
             }
             let JointState { q, dq } = plant.measure();

@@ -6,8 +6,8 @@
 //! - [`plant`]: an arm that knows nothing of the controller; [`arm_points`]: where its points
 //!   and links are; [`contact`]: what pushes it;
 //! - [`controllers`]: the laws that are compared;
-//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`metrics`],
-//!   [`after_fault`] and [`summary`]: figures and verdict;
+//! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`interrupt`]: by a
+//!   signal; [`metrics`], [`after_fault`] and [`summary`]: figures and verdict;
 //! - [`robot`]: the robot controller of the FRI link; [`link`]: what may happen to datagrams;
 //! - [`experiment`]: the loop around `controller-core` with one of the laws; [`loopback`]: the
 //!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
@@ -22,6 +22,7 @@ pub mod contact;
 pub mod controllers;
 pub mod experiment;
 pub mod explain;
+pub mod interrupt;
 pub mod link;
 pub mod loopback;
 pub mod metrics;

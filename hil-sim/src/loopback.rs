@@ -7,6 +7,7 @@ use std::io;
 
 use bridge::session::{ANSWER_LEN, Outcome, Session, SessionConfig};
 
+use crate::interrupt;
 use crate::link::{Expect, Fault, LockStep, Peer};
 use crate::robot::Robot;
 use cell::scenario::{Scenario, ScenarioSource};
@@ -62,6 +63,9 @@ pub fn run(
     let cycle_s = robot.setup().scenario.cycle_s();
     let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);
     while !robot.is_finished() {
+        if let Some(stop) = interrupt::stop() {
+            robot.abort(stop);
+        }
         link.cycle(robot, client)?;
         if let Some(instant) = robot.advance() {
             sink(&instant, &client.session)?;

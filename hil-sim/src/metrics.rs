@@ -1,11 +1,16 @@
 //! Figures of a run, accumulated cycle by cycle.
 
+use std::fmt;
+
 use cell::scenario::{Interval, LevelSpec, Metric, TaskSpec, Unit};
 use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
 use record::run::Sample;
+
+/// Beyond its range by less a joint is at its end: degrees became radians \[rad\].
+const ROUNDING_RAD: f64 = 1e-9;
 
 /// Mean of what was added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -127,6 +132,29 @@ pub struct JointFigures {
     pub range_deg: [f64; DOF],
     /// Distance from the start posture in the last cycle, per joint \[deg\].
     pub end_offset_deg: [f64; DOF],
+}
+
+/// A joint beyond its range: the arm could not have gone there.
+#[derive(Clone, Copy, Debug)]
+pub struct Beyond {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The position farthest from the middle \[rad\].
+    pub reached: f64,
+    /// What it may be, to either side \[rad\].
+    pub limit: f64,
+}
+
+impl fmt::Display for Beyond {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (joint, reached) = (self.joint, self.reached.to_degrees());
+        // Back from radians to the number of the data sheet.
+        let limit = (self.limit.to_degrees() * 1e9).round() / 1e9;
+        write!(
+            f,
+            "joint {joint} reached {reached:.4} deg, its range is -{limit} to {limit}"
+        )
+    }
 }
 
 /// Cycles in which each limit was active.
@@ -267,7 +295,7 @@ impl Metrics {
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
             self.lowest[joint] = self.lowest[joint].min(q);
             self.highest[joint] = self.highest[joint].max(q);
-            beyond |= q.abs() > self.position_limit[joint];
+            beyond |= q.abs() > self.position_limit[joint] + ROUNDING_RAD;
         }
         self.limits.position += usize::from(beyond);
         self.limits.torque += usize::from(sample.saturated);
@@ -313,6 +341,28 @@ impl Metrics {
             rms_error_nm: self.residual_error.root(),
             rms_nm: self.residual.root(),
         }
+    }
+
+    /// The intervals of the contacts that the run was to have.
+    #[must_use]
+    pub fn contacts(&self) -> &[Interval] {
+        &self.contacts
+    }
+
+    /// Joints that were beyond their range, how far they came and what they may \[rad\].
+    pub fn beyond(&self) -> impl Iterator<Item = Beyond> {
+        (0..DOF).filter_map(|index| {
+            let (lowest, highest) = (self.lowest[index], self.highest[index]);
+            let reached = if -lowest > highest { lowest } else { highest };
+            let limit = self.position_limit[index];
+            let joint = index + 1;
+            let is_beyond = reached.abs() > limit + ROUNDING_RAD && self.cycles > 0;
+            is_beyond.then_some(Beyond {
+                joint,
+                reached,
+                limit,
+            })
+        })
     }
 
     /// Torque figures.

@@ -16,48 +16,55 @@ pub mod stability;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use crate::output;
+use crate::interrupt;
+use crate::output::Folder;
+use crate::summary::Verdict as RunVerdict;
 use cell::invalid::Invalid;
-use cell::terminal::{print, show};
+use cell::terminal::{print, show, tell};
 use claim::{Claim, Verdict};
 use results::Results;
 
 /// Does everything and writes it to `out`: report.html, verdicts.json, figures,
 /// and the summary of every run. Exit code 1 if a limit is exceeded; a claim of
-/// the paper that does not hold is a result, not a failure.
+/// the paper that does not hold is a result, not a failure. Exit code 3 if it was
+/// interrupted; then nothing is written.
 ///
 /// # Errors
 /// The output folder cannot be written.
 pub fn run(out: &Path) -> Result<u8, Invalid> {
-    output::prepare(out)?;
-    let figures_folder = out.join("figures");
-    output::prepare(&figures_folder)?;
-
+    let mut folder = Folder::claim(out)?;
+    interrupt::heed();
     let terminal = io::stderr().is_terminal();
     let results = Results::of(plan::all()?, |done, all| {
         if terminal {
             show(format_args!("\r{done} of {all} runs"));
         }
     })?;
-    let evidence = stability::evidence()?;
     if terminal {
         show(format_args!("\r{:30}\r", ""));
     }
+    // Figures of runs that were cut short are no evidence.
+    if let Some(stop) = interrupt::stop() {
+        tell(format_args!("error: {stop}: nothing was written"));
+        return Ok(RunVerdict::Stopped.exit_code());
+    }
+    let evidence = stability::evidence()?;
     let claims = claims::all(&results, &evidence);
     let drawings = figures::all(&results, &evidence);
 
     for outcome in results.outcomes() {
-        let folder = out.join("runs").join(&outcome.id);
-        output::prepare(&folder)?;
-        output::write(&folder, "summary.json", &json(&outcome.summary)?)?;
+        let name = format!("runs/{}/summary.json", outcome.id);
+        folder.add(name, &json(&outcome.summary)?)?;
     }
     for figure in &drawings {
-        output::write(&figures_folder, figure.file, &figure.drawing.standalone())?;
+        let name = format!("figures/{}", figure.file);
+        folder.add(name, &figure.drawing.standalone())?;
     }
-    output::write(out, "stability.json", &json(&evidence)?)?;
-    output::write(out, "verdicts.json", &json(&claims)?)?;
+    folder.add("stability.json", &json(&evidence)?)?;
     let report = page::report(&results, &claims, &drawings, &evidence);
-    output::write(out, "report.html", &report)?;
+    folder.add("report.html", &report)?;
+    folder.add("verdicts.json", &json(&claims)?)?;
+    folder.publish()?;
 
     print(text(&claims, out))?;
     Ok(u8::from(claim::count(&claims, Verdict::OutOfLimit) > 0))

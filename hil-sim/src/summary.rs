@@ -17,11 +17,14 @@ use cell::names::{MeasurementKind, Named, PlantKind};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Every judged limit was kept.
+    /// Every limit was judged and kept, and every contact was there.
     Pass,
-    /// A limit was exceeded.
+    /// No limit was exceeded, and something that was to be judged did not come.
+    #[serde(rename = "not judged")]
+    NotJudged,
+    /// A limit was exceeded, or a joint left its range.
     Fail,
-    /// Safety stopped the run.
+    /// Safety stopped the run, or someone.
     Stopped,
 }
 
@@ -30,17 +33,18 @@ impl Verdict {
     #[must_use]
     pub fn exit_code(self) -> u8 {
         match self {
-            Self::Pass => 0,
+            Self::Pass | Self::NotJudged => 0,
             Self::Fail => 1,
             Self::Stopped => 3,
         }
     }
 
-    /// "pass", "fail" or "stopped".
+    /// "pass", "not judged", "fail" or "stopped".
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Pass => "pass",
+            Self::NotJudged => "not judged",
             Self::Fail => "fail",
             Self::Stopped => "stopped",
         }
@@ -109,7 +113,11 @@ impl Summary {
         let acceptance = judge(scenario, conditions, &levels);
         let mut faults = FaultCounts::default();
         let (verdict, reason) = match stop {
-            None => verdict(&acceptance),
+            None => {
+                let failures = failures(&acceptance, metrics);
+                let missing = missing(scenario, &acceptance, metrics, &levels);
+                verdict(&failures, &missing)
+            }
             Some(stop) => {
                 if let Stop::Fault(fault) = stop {
                     faults.add(fault.kind);
@@ -146,12 +154,29 @@ impl Summary {
     /// pass, though it exits like one.
     #[must_use]
     pub fn verdict_word(&self) -> &'static str {
-        let judged = self.acceptance.iter().any(|one| one.pass.is_some());
         match self.verdict {
             Verdict::Pass if self.acceptance.is_empty() => "no limit",
-            Verdict::Pass if !judged => "not judged",
             other => other.name(),
         }
+    }
+
+    /// What the run had to do without, in sentences.
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        let LimitCounts {
+            torque,
+            rank,
+            position,
+        } = self.limits;
+        [
+            ("the torque of a joint was cut to its limit", torque),
+            ("a row of a task could not be followed", rank),
+            ("a joint was beyond its range", position),
+        ]
+        .into_iter()
+        .filter(|(_, cycles)| *cycles > 0)
+        .map(|(what, cycles)| format!("{what} in {cycles} of {} cycles", self.cycles))
+        .collect()
     }
 }
 
@@ -191,10 +216,10 @@ fn judge(scenario: &Scenario, conditions: &Conditions, levels: &[LevelFigures]) 
         .collect()
 }
 
-/// Verdict and reason of a run that safety did not stop.
-fn verdict(acceptance: &[Acceptance]) -> (Verdict, Option<String>) {
+/// Limits that were exceeded, joints that left their range.
+fn failures(acceptance: &[Acceptance], metrics: &Metrics) -> Vec<String> {
     let failed = acceptance.iter().filter(|limit| limit.pass == Some(false));
-    let reasons: Vec<_> = failed
+    failed
         .map(|limit| {
             let value = limit.value.unwrap_or(f64::NAN);
             format!(
@@ -202,10 +227,57 @@ fn verdict(acceptance: &[Acceptance]) -> (Verdict, Option<String>) {
                 limit.metric, limit.limit
             )
         })
-        .collect();
-    if reasons.is_empty() {
-        (Verdict::Pass, None)
-    } else {
-        (Verdict::Fail, Some(reasons.join("; ")))
+        .chain(metrics.beyond().map(|joint| joint.to_string()))
+        .collect()
+}
+
+/// What was to be judged and did not come: contacts after the end, plateaus that a limit
+/// is about, limits without samples.
+fn missing(
+    scenario: &Scenario,
+    acceptance: &[Acceptance],
+    metrics: &Metrics,
+    levels: &[LevelFigures],
+) -> Vec<String> {
+    let end = scenario.duration_s;
+    let on_plateaus = acceptance.iter().filter_map(|limit| {
+        match Metric::parse(&limit.metric, &scenario.levels) {
+            Ok(Metric::Plateau(level)) => Some(level),
+            _ => None,
+        }
+    });
+    let on_plateaus: Vec<_> = on_plateaus.collect();
+    let (mut late, mut cut) = (Vec::new(), Vec::new());
+    for (index, contact) in metrics.contacts().iter().enumerate() {
+        let no_plateau = |level: &usize| levels[*level].plateaus().nth(index).flatten().is_none();
+        let list = match contact.from_s >= end {
+            true => &mut late,
+            false if on_plateaus.iter().any(no_plateau) => &mut cut,
+            false => continue,
+        };
+        let name = match index.checked_sub(scenario.pushes.len()) {
+            None => format!("contact {}", index + 1),
+            Some(hand) => format!("hand {}", hand + 1),
+        };
+        list.push(format!("{name} ({} to {} s)", contact.from_s, contact.to_s));
+    }
+    let contacts = [
+        (late, "after the end"),
+        (cut, "without plateau before the end"),
+    ];
+    let contacts = contacts.into_iter().filter(|(list, _)| !list.is_empty());
+    let unjudged = acceptance.iter().filter(|limit| limit.pass.is_none());
+    unjudged
+        .map(|limit| format!("{} has no samples", limit.metric))
+        .chain(contacts.map(|(list, what)| format!("{what} at {end} s: {}", list.join(", "))))
+        .collect()
+}
+
+/// Verdict and reason of a run that nothing stopped.
+fn verdict(failures: &[String], missing: &[String]) -> (Verdict, Option<String>) {
+    match (failures, missing) {
+        ([], []) => (Verdict::Pass, None),
+        ([], missing) => (Verdict::NotJudged, Some(missing.join("; "))),
+        (failures, _) => (Verdict::Fail, Some(failures.join("; "))),
     }
 }

@@ -45,6 +45,18 @@ impl<W: Write> Trace<W> {
     }
 }
 
+/// About how many bytes the trace of a whole run has.
+#[must_use]
+pub fn expected_bytes(scenario: &Scenario) -> f64 {
+    /// Mean length of a number with its comma.
+    const NUMBER: usize = 23;
+    let mut header = Vec::new();
+    // Writing to memory does not fail.
+    let _ = Trace::new(&mut header, scenario);
+    let columns = 1 + header.iter().filter(|&&byte| byte == b',').count();
+    (columns * NUMBER) as f64 * scenario.cycles() as f64
+}
+
 /// Names of the coordinates of a level.
 fn axes(level: &LevelSpec) -> Vec<String> {
     match level.task {

@@ -75,6 +75,11 @@ fn arguments() {
         "run two-level --seed",
         "run two-level --seed 1 --seed 2",
         "run two-level extra",
+        // 35 GB.
+        "run case-1 --duration 3600 --cycle-ms 0.1",
+        // No file with an end.
+        "run /dev/zero",
+        "run .",
         // A file where a folder should be.
         "run two-level --out a-file",
         "run two-level --out a-file/below",
@@ -116,6 +121,7 @@ fn arguments() {
         "scenario tow-level",
         "scenario",
         "explain missing.json",
+        "explain /dev/zero",
         "paper --out a-file",
     ] {
         let words: Vec<_> = arguments.split(' ').collect();
@@ -244,6 +250,7 @@ fn scenario_files() {
     let mut lines = String::new();
     let more = "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n";
     let rows = format!("{more}{more}[null_space]");
+    let long = format!("name = \"{}\"", "long".repeat(100_000));
     let mutations = [
         ("not TOML", "[observer]", "[observer"),
         (
@@ -268,6 +275,12 @@ fn scenario_files() {
             "name = \"two-level\"",
             "name = \"../two\"",
         ),
+        (
+            "a name with orders for a terminal",
+            "name = \"two-level\"",
+            "name = \"\\u001b[31mred\"",
+        ),
+        ("a long name", "name = \"two-level\"", &long),
         (
             "six joints",
             "[0.0, 35.0, 0.0, -80.0, 20.0, 60.0, 0.0]",
@@ -348,4 +361,27 @@ fn scenario_files() {
         writeln!(lines, "{what}\n{}\n", stderr.trim_end()).expect("memory");
     }
     insta::assert_snapshot!(lines);
+}
+
+/// A pipe that nobody writes to is not waited for; a text without end is not read to it.
+#[cfg(unix)]
+#[test]
+fn pipes_and_endless_texts() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let pipe = folder.path().join("pipe.toml");
+    let made = Command::new("mkfifo").arg(&pipe).status().expect("mkfifo");
+    assert!(made.success());
+    let output = hil_sim(folder.path(), &["run", "pipe.toml"], "");
+    assert_eq!(output.status.code(), Some(2));
+    let stderr = String::from_utf8(output.stderr).expect("text");
+    assert!(stderr.contains("pipe.toml") && stderr.contains("not a regular file"));
+
+    let endless = std::fs::File::open("/dev/zero").expect("a device");
+    let output = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+        .args(["explain", "-"])
+        .stdin(endless)
+        .output()
+        .expect("the program runs");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("more than 1024 KiB"));
 }

@@ -1,34 +1,55 @@
 //! The files of a run: trace, report, figures, summary.
 
 use std::io;
-use std::path::{Path, PathBuf};
 
-use crate::output::{self, Draft};
+use crate::output::{Draft, Folder};
 use crate::report::{self, Choices, Recording};
 use crate::summary::Summary;
-use crate::trace::Trace;
+use crate::trace::{self, Trace};
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
+use cell::terminal::tell;
 use record::run::Sample;
+
+/// From here on the size of trace.csv is said before a run \[GB\].
+const NOTABLE_GB: f64 = 1.0;
+
+/// Says how large trace.csv will be, where that matters.
+///
+/// # Errors
+/// It would be larger than `most_gb`.
+pub fn announce(scenario: &Scenario, most_gb: f64) -> Result<(), Invalid> {
+    let size_gb = trace::expected_bytes(scenario) / 1e9;
+    if size_gb > most_gb {
+        let given = format!("about {size_gb:.1} GB of {} cycles", scenario.cycles());
+        let allowed = format!("at most {most_gb} GB; see --max-trace-gb");
+        return Err(Invalid::new("trace.csv", given, allowed));
+    }
+    if size_gb > NOTABLE_GB {
+        tell(format_args!(
+            "note: trace.csv will have about {size_gb:.1} GB"
+        ));
+    }
+    Ok(())
+}
 
 /// Files on their way: nothing is seen of them before [`Files::finish`].
 pub struct Files {
-    out: PathBuf,
+    folder: Folder,
     trace: Trace<Draft>,
     recording: Recording,
 }
 
 impl Files {
-    /// Makes the folder `out`. `contacts` says whether scripted contacts act.
+    /// Files in `folder`. `contacts` says whether scripted contacts act.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn create(out: &Path, scenario: &Scenario, contacts: bool) -> Result<Self, Invalid> {
-        output::prepare(out)?;
-        let trace = Trace::new(Draft::create(out, "trace.csv")?, scenario)
-            .map_err(|error| Invalid::line(error).within(out.display()))?;
+    pub fn create(folder: Folder, scenario: &Scenario, contacts: bool) -> Result<Self, Invalid> {
+        let trace = Trace::new(folder.draft("trace.csv")?, scenario)
+            .map_err(|error| Invalid::line(error).within(folder.path().display()))?;
         Ok(Self {
-            out: out.to_path_buf(),
+            folder,
             trace,
             recording: Recording::new(scenario, contacts),
         })
@@ -45,7 +66,7 @@ impl Files {
 
     /// An error of the disk, in one line.
     pub fn failed(&self, error: io::Error) -> Invalid {
-        Invalid::line(error).within(self.out.display())
+        Invalid::line(error).within(self.folder.path().display())
     }
 
     /// Writes everything. `command` is the command line that repeats the run.
@@ -65,16 +86,15 @@ impl Files {
             command,
             ..report::Run::new(summary, scenario, &self.recording)
         };
-        let out = &self.out;
-        let figures = out.join("figures");
-        output::prepare(&figures)?;
+        let folder = &mut self.folder;
         for figure in report::figures(&run) {
-            output::write(&figures, figure.file, &figure.drawing.standalone())?;
+            let name = format!("figures/{}", figure.file);
+            folder.add(name, &figure.drawing.standalone())?;
         }
-        output::write(out, "report.html", &report::run_report(&run))?;
-        let trace = self.trace.finish().commit();
-        trace.map_err(|error| Invalid::line(error).within(out.display()))?;
+        folder.add("report.html", &report::run_report(&run))?;
+        folder.keep(self.trace.finish())?;
         let json = serde_json::to_string_pretty(summary).map_err(Invalid::line)?;
-        output::write(out, "summary.json", &(json + "\n"))
+        folder.add("summary.json", &(json + "\n"))?;
+        self.folder.publish()
     }
 }

@@ -7,18 +7,24 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use controller_core::Controller;
 
-use super::files::Files;
+use super::files::{Files, announce};
+use super::notes;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
+use crate::interrupt;
+use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
-use crate::summary::Summary;
+use crate::summary::{Summary, Verdict};
 use cell::arguments::values::{number, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
-use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, SEED};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED};
 use cell::scenario::Scenario;
-use cell::terminal::{print, show, tell};
+use cell::terminal::{print, show};
+
+/// Size of a trace \[GB\].
+const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -61,6 +67,9 @@ pub struct RunOptions {
     #[arg(long, value_parser = number(CYCLE_MS),
         help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
+    #[arg(long, default_value = "4", value_parser = number(TRACE_GB),
+        help = format!("Largest trace.csv that may be written, in GB, {TRACE_GB}"))]
+    max_trace_gb: f64,
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -78,7 +87,11 @@ impl RunOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
-        let summary = execute(&experiment, &out, Some(&command))?;
+        let controller = experiment.controller()?;
+        announce(&experiment.scenario, self.max_trace_gb)?;
+        let folder = Folder::claim(&out)?;
+        interrupt::heed();
+        let summary = execute(&experiment, &controller, folder, Some(&command))?;
         let mut text = experiment_heading(&experiment);
         text += &table(&[&summary]);
         text += &footer(&summary, &out);
@@ -107,6 +120,7 @@ impl RunOptions {
         option("stiction", &self.stiction, "off");
         option("elasticity", &self.elasticity, "off");
         option("seed", &self.seed.to_string(), "1");
+        option("max-trace-gb", &self.max_trace_gb.to_string(), "4");
         for (name, value) in [("duration", self.duration), ("cycle-ms", self.cycle_ms)] {
             if let Some(value) = value {
                 option(name, &value.to_string(), "");
@@ -184,59 +198,56 @@ pub fn comparison() -> Result<u8, Invalid> {
         seed: 1,
         options: PlantOptions::default(),
     };
-    let summary = execute(&product, &out, None)?;
+    let folder = Folder::claim(&out)?;
+    let others = [TorqueLaw::NoObserver, TorqueLaw::AccelerationLevel].map(ControllerKind::from);
+    let folders = others.map(|controller| Folder::claim(&out.join(controller.name())));
+    let folders: Vec<_> = folders.into_iter().collect::<Result<_, _>>()?;
+    interrupt::heed();
+    let summary = execute(&product, &product.controller()?, folder, None)?;
     let mut rows = vec![summary.clone()];
-    for law in [TorqueLaw::NoObserver, TorqueLaw::AccelerationLevel] {
-        let controller = ControllerKind::from(law);
+    for (controller, folder) in others.into_iter().zip(folders) {
+        if interrupt::stop().is_some() {
+            break;
+        }
         let other = Experiment {
             controller,
             ..product.clone()
         };
-        rows.push(execute(&other, &out.join(controller.name()), None)?);
+        rows.push(execute(&other, &other.controller()?, folder, None)?);
     }
     let mut text = experiment_heading(&product);
     text += &table(&rows.iter().collect::<Vec<_>>());
     text += &footer(&summary, &out);
     text += "Only hierarchical has to pass: the others are there for comparison.\n";
     print(&text)?;
-    Ok(summary.verdict.exit_code())
+    let verdict = match interrupt::stop() {
+        Some(_) => Verdict::Stopped,
+        None => summary.verdict,
+    };
+    Ok(verdict.exit_code())
 }
 
 /// Runs an experiment and writes its files.
-fn execute(experiment: &Experiment, out: &Path, command: Option<&str>) -> Result<Summary, Invalid> {
+fn execute(
+    experiment: &Experiment,
+    controller: &Controller<f64>,
+    folder: Folder,
+    command: Option<&str>,
+) -> Result<Summary, Invalid> {
     let scenario = &experiment.scenario;
-    let controller = experiment.controller()?;
-    let mut files = Files::create(out, scenario, experiment.contacts)?;
+    let mut files = Files::create(folder, scenario, experiment.contacts)?;
 
+    notes::tell_all(experiment, controller);
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
-        &controller,
+        controller,
         |instant| files.push(scenario, instant),
         |share| progress.show(share),
     );
     progress.clear();
     let summary = written.map_err(|error| files.failed(error))?;
-    warn_of_damping(experiment, &controller);
     files.finish(scenario, &summary, Choices::of(experiment), command)?;
     Ok(summary)
-}
-
-/// A damping above half its bound works, but says so.
-fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
-    let dead_cycles = experiment.options.dead_cycles as u8;
-    let Ok(config) = experiment.scenario.controller_config(dead_cycles) else {
-        return;
-    };
-    let bound = config.damping_bound();
-    let mode = controller.fastest_mode();
-    let value = mode.rate * experiment.scenario.cycle_s();
-    if value > bound / 2.0 && experiment.controller == TorqueLaw::Hierarchical.into() {
-        tell(format_args!(
-            "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
-             (joint {}, stretched postures)",
-            mode.joint
-        ));
-    }
 }
 
 fn experiment_heading(experiment: &Experiment) -> String {
@@ -295,6 +306,11 @@ pub(super) fn table(runs: &[&Summary]) -> String {
                 figure(level.max()),
                 figure(level.worst_plateau()),
             );
+        }
+    }
+    for run in runs {
+        for remark in run.remarks() {
+            text += &format!("{}: {remark}\n", run.controller);
         }
     }
     text

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::files::Files;
+use super::files::{Files, announce};
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
+use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
@@ -201,11 +202,13 @@ impl ServeOptions {
             .out
             .clone()
             .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
+        // By the least cycle and the longest run that the protocol has it stays bounded.
+        announce(&scenario, f64::INFINITY)?;
         let mut client: Box<dyn Transport> = match &service.client {
             Client::Udp { remote, local_port } => Box::new(Udp::open(*remote, *local_port)?),
             Client::Serial(path) => Box::new(Serial::open(path)?),
         };
-        let mut files = Files::create(&out, &scenario, setup.contacts)?;
+        let mut files = Files::create(Folder::claim(&out)?, &scenario, setup.contacts)?;
         tell(format_args!(
             "robot at the start posture, measurements go to {}; lines on standard input: push, \
              release, drives off|on, quit",

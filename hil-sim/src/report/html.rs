@@ -113,27 +113,35 @@ fn banner(summary: &Summary) -> String {
     let all = judged.len();
     let kept = judged.iter().filter(|&&pass| pass).count();
     let good = match all {
-        0 if summary.acceptance.is_empty() => "The scenario sets no limit for such a run.",
-        0 => "No limit could be judged: there are no samples.",
+        0 => "The scenario sets no limit for such a run.",
         1 => "The one limit is kept.",
         _ => &format!("All {all} limits are kept."),
     };
     let reason = summary.reason.as_deref().unwrap_or(good);
     let word = summary.verdict_word().to_uppercase();
-    match summary.verdict {
-        Verdict::Pass if all == 0 => verdict("none", &word, &[reason]),
-        Verdict::Pass => verdict("pass", &word, &[reason]),
-        // The reason of a failure is a list of limits, that of a stop one sentence.
-        Verdict::Fail => {
-            let kept = format!("{kept} of {all} limits kept.");
-            let reasons: Vec<_> = reason.split("; ").chain([kept.as_str()]).collect();
-            verdict("fail", &word, &reasons)
+    let class = match summary.verdict {
+        Verdict::Pass if all == 0 => "none",
+        Verdict::Pass => "pass",
+        Verdict::NotJudged => "none",
+        Verdict::Fail => "fail",
+        Verdict::Stopped => "stopped",
+    };
+    let note = match summary.verdict {
+        Verdict::Stopped => Some(format!("The run ended after {} cycles.", summary.cycles)),
+        Verdict::Fail | Verdict::NotJudged if all > 0 => {
+            Some(format!("{kept} of {all} limits kept."))
         }
-        Verdict::Stopped => {
-            let end = format!("The run ended after {} cycles.", summary.cycles);
-            verdict("stopped", &word, &[reason, &end])
-        }
-    }
+        _ => None,
+    };
+    // The reason of a failure is a list, that of a stop one sentence.
+    let reasons: Vec<_> = match summary.verdict {
+        Verdict::Stopped => vec![reason],
+        _ => reason.split("; ").collect(),
+    };
+    let remarks = summary.remarks();
+    let notes = note.iter().chain(&remarks).map(String::as_str);
+    let reasons: Vec<_> = reasons.into_iter().chain(notes).collect();
+    verdict(class, &word, &reasons)
 }
 
 fn drawings(run: &Run<'_>) -> String {

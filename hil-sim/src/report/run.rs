@@ -100,11 +100,13 @@ impl<'a> Run<'a> {
         self.summary.controller == CLIENT
     }
 
-    /// Whether the run came as far as `t_s`; only a stopped one may not have.
+    /// Whether the run came as far as `t_s`: a stopped one to its last cycle.
     #[must_use]
     pub fn reached(&self, t_s: f64) -> bool {
-        self.summary.verdict != Verdict::Stopped
-            || self.recording.t().last().is_some_and(|&end| t_s <= end)
+        match self.summary.verdict {
+            Verdict::Stopped => self.recording.t().last().is_some_and(|&end| t_s <= end),
+            _ => t_s < self.scenario.duration_s,
+        }
     }
 
     /// When someone or something touched the arm: the pushes, then the hands,

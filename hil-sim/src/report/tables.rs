@@ -161,18 +161,20 @@ pub fn levels(run: &Run<'_>) -> String {
 
 /// Who pushed where, when, how hard, and how far each level gave way.
 pub fn contacts(run: &Run<'_>) -> String {
-    let interval = |from, to| format!("{} to {}", plain(from), plain(to));
+    let interval = |from, to| {
+        let missed = if run.reached(from) {
+            ""
+        } else {
+            ", not reached"
+        };
+        format!("{} to {}{missed}", plain(from), plain(to))
+    };
     let pushes = run.pushes().iter().map(|push| {
         let force = push.force_n.map(plain).join(", ");
         let size = push.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
-        let when = interval(push.from_s, push.to_s);
         [
             escape(&push.point.label()),
-            if run.reached(push.from_s) {
-                when
-            } else {
-                format!("{when}, not reached")
-            },
+            interval(push.from_s, push.to_s),
             format!("#{force}"),
             number(Some(size)),
         ]

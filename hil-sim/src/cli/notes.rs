@@ -1,0 +1,85 @@
+//! What is said before a run of a scenario that is allowed and may not be meant.
+
+use std::io;
+
+use controller_core::Controller;
+
+use crate::controllers::{ControllerKind, TorqueLaw};
+use crate::experiment::Experiment;
+use crate::plant::PlantOptions;
+use cell::names::PlantKind;
+use cell::scenario::PostureSpec;
+use cell::terminal::tell;
+use record::run::Sample;
+
+/// How far a run is looked ahead \[s\].
+const AHEAD_S: f64 = 20.0;
+
+/// Every note on this run.
+pub fn tell_all(experiment: &Experiment, controller: &Controller<f64>) {
+    warn_of_damping(experiment, controller);
+    if let Ok(Some(note)) = drift(experiment, controller) {
+        tell(format_args!("note: {note}"));
+    }
+}
+
+/// A damping above half its bound works, but says so.
+fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
+    let dead_cycles = experiment.options.dead_cycles as u8;
+    let Ok(config) = experiment.scenario.controller_config(dead_cycles) else {
+        return;
+    };
+    let bound = config.damping_bound();
+    let mode = controller.fastest_mode();
+    let value = mode.rate * experiment.scenario.cycle_s();
+    if value > bound / 2.0 && experiment.controller == TorqueLaw::Hierarchical.into() {
+        tell(format_args!(
+            "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
+             (joint {}, stretched postures)",
+            mode.joint
+        ));
+    }
+}
+
+/// An integrated posture drifts; how far, without pushes and on an ideal arm, is tried out.
+fn drift(experiment: &Experiment, controller: &Controller<f64>) -> io::Result<Option<String>> {
+    let posture = match experiment.scenario.null_space.posture {
+        PostureSpec::Constant => return Ok(None),
+        PostureSpec::IntegralCoupled => "integral-coupled",
+        PostureSpec::IntegralUncoupled => "integral-uncoupled",
+    };
+    if experiment.controller == ControllerKind::VelocityLevel {
+        return Ok(None);
+    }
+    let mut free = Experiment {
+        plant: PlantKind::Ideal,
+        contacts: false,
+        options: PlantOptions {
+            dead_cycles: experiment.options.dead_cycles,
+            ..PlantOptions::default()
+        },
+        ..experiment.clone()
+    };
+    free.scenario.duration_s = free.scenario.duration_s.min(AHEAD_S);
+    let limits = controller.arm().position_limit();
+    let (mut end_s, mut beyond) = (0.0, None);
+    let look = |sample: &Sample| {
+        end_s = sample.t_s;
+        let joints = sample.state.q.iter().zip(limits);
+        let left = joints.enumerate().find(|(_, (q, limit))| q.abs() > **limit);
+        beyond = beyond.or(left.map(|(index, _)| (index + 1, sample.t_s)));
+        Ok(())
+    };
+    let travel = free.run(controller, look, |_| ())?.joints.range_deg;
+    let most = (0..travel.len()).max_by(|&a, &b| travel[a].total_cmp(&travel[b]));
+    let most = most.unwrap_or_default();
+    let range = beyond.map_or(String::new(), |(joint, t_s)| {
+        format!("; joint {joint} leaves its range at {t_s:.1} s")
+    });
+    Ok(Some(format!(
+        "posture {posture} drifts: on an ideal arm without contacts joint {} travels {:.0} deg \
+         in {end_s:.1} s{range}",
+        most + 1,
+        travel[most],
+    )))
+}
