@@ -1,12 +1,16 @@
 //! One control cycle, from measurement to torque.
 
+use super::brake::{Brake, next};
 use super::controller::Controller;
 use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
 use super::stages::{StageName, kinematics_at, torque_demand};
 use super::usable::usable;
-use crate::fault::Status;
-use crate::joint::{JointState, JointVector, zeros};
+use crate::fault::{Fault, IndexSet, Mode, Status};
+use crate::joint::{DOF, JointState, JointVector, zeros};
+use crate::law::allocation::TorqueLimits;
+use crate::law::control::TorqueDemand;
+use crate::ranges::{BLIND_FADE_S, INTERVAL_FACTORS, SPEED_FACTOR};
 use crate::real::Real;
 use crate::task::Reference;
 
@@ -127,6 +131,88 @@ impl<T: Real> Controller<T> {
                 run(self, input, data);
             }
         }
+    }
+}
+
+impl<T: Real> Controller<T> {
+    /// A cycle with a fault.
+    #[inline(never)]
+    pub(super) fn brake(
+        &self,
+        state: &mut State<T>,
+        input: &Input<'_, T>,
+        fault: Fault,
+    ) -> Step<T> {
+        if state.fault.is_none() {
+            state.brake = Brake::new();
+        }
+        state.fault = Some(fault);
+        let followed = state.brake.mode != Mode::Stopped && self.follows(state, input.measurement);
+        let demand = if followed {
+            self.evaluate_until(StageName::HoldingTorque, input, &mut state.data);
+            state.seen = true;
+            state.brake.blind_s = T::ZERO;
+            state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
+            let dynamics = &state.data.dynamics;
+            dynamics.gravity - dynamics.momentum * self.brake_rate
+        } else {
+            let brake = &mut state.brake;
+            brake.blind_s += self.cycle_s;
+            let left = T::ONE - brake.blind_s * T::from_f64(1.0 / BLIND_FADE_S);
+            let ends = left <= T::ZERO || brake.mode == Mode::Stopped;
+            brake.mode = if ends { Mode::Stopped } else { Mode::Blind };
+            state.data.holding_torque * if ends { T::ZERO } else { left }
+        };
+        let limits = TorqueLimits {
+            limit: self.arm.torque_limit(),
+            step: &self.brake_step,
+        };
+        let allocation = &mut state.data.allocation;
+        allocation.update(&TorqueDemand(demand), &limits);
+        let (mode, torque) = (state.brake.mode, allocation.torque);
+        Step {
+            torque,
+            residual: zeros(),
+            // What a robot adds by itself goes on while nobody sees.
+            gravity: if followed {
+                state.data.dynamics.gravity
+            } else {
+                torque
+            },
+            coriolis: zeros(),
+            status: Status {
+                mode,
+                fault: Some(fault),
+                saturated: allocation.saturated,
+                rate_limited: allocation.rate_limited,
+                rank: IndexSet::NONE,
+            },
+        }
+    }
+
+    /// Whether the arm can be where a measurement says, seen from where it was last: finite,
+    /// and no faster than four times what is believed of an arm that runs. A position or a speed
+    /// may be a fault and true.
+    fn follows(&self, state: &State<T>, measurement: &Measurement<T>) -> bool {
+        if !state.seen {
+            return believe(&self.arm, self.cycle_s, measurement).is_ok();
+        }
+        let fastest = T::from_f64(4.0 * SPEED_FACTOR);
+        let [_, longest] = INTERVAL_FACTORS;
+        // An interval may be what is wrong: then the arm may have moved for the longest one.
+        let longest_s = T::from_f64(longest) * self.cycle_s;
+        let interval_s = measurement.interval_s;
+        let believed = interval_s >= self.cycle_s && interval_s <= longest_s;
+        let since_s = state.brake.blind_s + if believed { interval_s } else { longest_s };
+        let (speeds, last) = (self.arm.speed_limit(), &state.data.joints.q);
+        let mut followed = true;
+        for i in 0..DOF {
+            let speed = fastest * speeds[i];
+            // False for NaN as well.
+            followed &= measurement.dq[i].magnitude() <= speed;
+            followed &= (measurement.q[i] - last[i]).magnitude() <= speed * since_s;
+        }
+        followed
     }
 }
 

@@ -63,7 +63,8 @@ impl Krc {
         };
         for (joint, (torque, &bound)) in (1..).zip(torque.iter().zip(&self.torque_bound)) {
             // Not so of what is no number either.
-            if !(torque.abs() <= bound) {
+            let within = torque.abs() <= bound;
+            if !within {
                 self.refuse(format_args!(
                     "addJntTrq of joint {joint} is {torque:.1} Nm; allowed: {bound:.0}"
                 ));
