@@ -62,15 +62,17 @@ fn drift(experiment: &Experiment, controller: &Controller<f64>) -> io::Result<Op
     };
     free.scenario.duration_s = free.scenario.duration_s.min(AHEAD_S);
     let limits = controller.arm().position_limit();
-    let (mut end_s, mut beyond) = (0.0, None);
+    let mut beyond = None;
     let look = |sample: &Sample| {
-        end_s = sample.t_s;
         let joints = sample.state.q.iter().zip(limits);
         let left = joints.enumerate().find(|(_, (q, limit))| q.abs() > **limit);
         beyond = beyond.or(left.map(|(index, _)| (index + 1, sample.t_s)));
         Ok(())
     };
-    let travel = free.run(controller, look, |_| ())?.joints.range_deg;
+    let summary = free.run(controller, look, |_| ())?;
+    let travel = summary.joints.range_deg;
+    // The last cycle that counts.
+    let end_s = summary.cycles.saturating_sub(1) as f64 * free.scenario.cycle_s();
     let most = (0..travel.len()).max_by(|&a, &b| travel[a].total_cmp(&travel[b]));
     let most = most.unwrap_or_default();
     let range = beyond.map_or(String::new(), |(joint, t_s)| {
