@@ -1,9 +1,9 @@
 //! What a person types while the robot is served, and Ctrl-C.
 
-use std::io::BufRead;
+use std::io::{self, BufRead, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
 use crate::robot::Robot;
@@ -16,6 +16,12 @@ use cell::terminal::tell;
 /// One line for a line that means nothing.
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \
                     drives off|on, quit";
+
+/// Longest line \[bytes\].
+const LONGEST: usize = 200;
+
+/// Lines that wait for the robot; whoever writes more waits.
+const QUEUE: usize = 16;
 
 /// A coordinate of a force that can be typed \[N\].
 const FORCE_N: Range<f64> = Range::new(-1000.0, 1000.0);
@@ -39,6 +45,10 @@ impl Wish {
     /// # Errors
     /// What cannot be used, and what is allowed.
     pub fn read(line: &str) -> Result<Option<Self>, Invalid> {
+        if line.len() > LONGEST {
+            let allowed = format_args!("at most {LONGEST} bytes");
+            return Err(Invalid::new("line", "longer", allowed));
+        }
         let words: Vec<_> = line.split_whitespace().collect();
         Ok(Some(match words[..] {
             [] => return Ok(None),
@@ -61,6 +71,30 @@ impl Wish {
             ["quit"] => Self::Quit,
             _ => return Err(Invalid::line(format_args!("'{line}': {HELP}"))),
         }))
+    }
+}
+
+/// The next line, none at the end. Of a line that is too long only the beginning is kept,
+/// longer than [`LONGEST`]; what is no text is replaced.
+fn next_line(input: &mut impl BufRead) -> io::Result<Option<String>> {
+    let mut line = Vec::new();
+    let mut begun = false;
+    loop {
+        let bytes = match input.fill_buf() {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            bytes => bytes?,
+        };
+        let (read, end) = match bytes.iter().position(|&byte| byte == b'\n') {
+            Some(length) => (length, 1),
+            None => (bytes.len(), 0),
+        };
+        line.extend(bytes.iter().take(read.min(LONGEST + 1 - line.len())));
+        begun |= read + end > 0;
+        let over = read + end == 0;
+        input.consume(read + end);
+        if over || end > 0 {
+            return Ok(begun.then(|| String::from_utf8_lossy(&line).into_owned()));
+        }
     }
 }
 
@@ -87,9 +121,10 @@ impl Operator {
         let flag = Arc::clone(&interrupted);
         // Without a handler Ctrl-C ends the program, which is what it did before.
         let _ = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-        let (sender, lines) = channel();
+        let (sender, lines) = sync_channel(QUEUE);
         thread::spawn(move || {
-            for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            let mut input = io::stdin().lock();
+            while let Ok(Some(line)) = next_line(&mut input) {
                 if sender.send(line).is_err() {
                     return;
                 }
@@ -107,7 +142,8 @@ impl Operator {
             robot.abort(Stop::Interrupted);
         }
         let Some(lines) = &self.lines else { return };
-        while let Ok(line) = lines.try_recv() {
+        // No more of them: the writer may be faster than this is.
+        for line in lines.try_iter().take(QUEUE) {
             match Wish::read(&line) {
                 Ok(None) => (),
                 Ok(Some(Wish::Push(point, force, seconds))) => robot.push(point, force, seconds),
@@ -136,6 +172,28 @@ mod tests {
             Ok(Some(Wish::Drives(false)))
         ));
         assert!(matches!(Wish::read(""), Ok(None)));
+    }
+
+    #[test]
+    fn lines_that_are_no_text_or_too_long_are_told_and_the_next_is_read() {
+        let input = [b"\xFF\xFE\n", &[0; 100_000][..], b"\n\nquit\nrelease"].concat();
+        // Pieces of 7 bytes: lines begin and end anywhere in them.
+        let mut input = io::BufReader::with_capacity(7, &input[..]);
+        let mut lines = Vec::new();
+        while let Some(line) = next_line(&mut input).expect("memory") {
+            assert!(line.len() <= LONGEST + 1);
+            lines.push(Wish::read(&line));
+        }
+        let [text, long, empty, quit, last] = &lines[..] else {
+            panic!("{lines:?}");
+        };
+        for (wrong, part) in [(text, "'\u{FFFD}\u{FFFD}'"), (long, "at most 200 bytes")] {
+            let error = wrong.as_ref().expect_err(part).to_string();
+            assert!(error.contains(part), "{error}");
+        }
+        assert!(matches!(empty, Ok(None)));
+        assert!(matches!(quit, Ok(Some(Wish::Quit))));
+        assert!(matches!(last, Ok(Some(Wish::Release))));
     }
 
     #[test]
