@@ -95,6 +95,7 @@ impl Robot {
             JointVector::from_fn(|i, _| value(&arm.links[i]))
         };
         let speed_limit = limit(|link| link.speed_limit);
+        let torque_limit = limit(|link| link.torque_limit);
         let contacts = if setup.contacts {
             Contacts::of(scenario)
         } else {
@@ -107,10 +108,10 @@ impl Robot {
         Self {
             cycle_s,
             model: RobotModel::new(arm),
-            torque_limit: limit(|link| link.torque_limit),
+            torque_limit,
             speed_limit,
             plant: Plant::with_options(setup.plant, arm, q0, cycle_s, setup.seed, own),
-            krc: Krc::new(setup.options, cycle_s, &q0, &speed_limit),
+            krc: Krc::new(setup.options, cycle_s, &q0, &speed_limit, &torque_limit),
             rating: Rating::new(setup.options.rating, cycle_s),
             inbox: Inbox::new(),
             counters: Counters::default(),

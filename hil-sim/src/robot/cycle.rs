@@ -125,10 +125,13 @@ impl Robot {
             });
         }
 
-        let residual = self
-            .krc
-            .order()
-            .map_or(JointVector::zeros(), |order| order.residual);
+        // User data may hold anything; figures are made from what a torque can be.
+        let residual = self.krc.order().map_or(JointVector::zeros(), |order| {
+            let limit = &self.torque_limit;
+            order
+                .residual
+                .zip_map(limit, |r, limit| r.clamp(-limit, limit))
+        });
         self.move_on(&driving);
 
         let (t_s, start) = (t_s?, self.start.as_ref()?);

@@ -48,6 +48,8 @@ pub struct Rejected {
     pub reflection: u64,
     /// jntPos jumps.
     pub jump: u64,
+    /// addJntTrq is more than twice the joint's limit.
+    pub torque: u64,
     /// cmdFlags differ from those at the beginning of command state.
     pub flags: u64,
 }
@@ -56,7 +58,8 @@ impl Rejected {
     /// All together.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.length + self.header + self.not_finite + self.reflection + self.jump + self.flags
+        let unread = self.length + self.header + self.not_finite + self.reflection;
+        unread + self.jump + self.torque + self.flags
     }
 }
 

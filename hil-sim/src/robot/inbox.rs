@@ -127,5 +127,6 @@ pub fn count_refusal(rejected: &mut Rejected, refusal: Refusal) {
     match refusal {
         Refusal::Flags => rejected.flags += 1,
         Refusal::Jump => rejected.jump += 1,
+        Refusal::Torque => rejected.torque += 1,
     }
 }

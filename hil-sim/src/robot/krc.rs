@@ -19,6 +19,8 @@ pub enum Refusal {
     Flags,
     /// jntPos jumps.
     Jump,
+    /// addJntTrq is more than any client can mean.
+    Torque,
 }
 
 /// What a cycle brings besides the answer.
@@ -41,6 +43,8 @@ pub struct Krc {
     cycle_s: f64,
     /// Largest motion of jntPos in a cycle \[rad\].
     reach: JointVector<f64>,
+    /// Largest added torque that is taken for meant \[Nm\].
+    torque_bound: JointVector<f64>,
     /// In command state; else in monitor state.
     commands: bool,
     scheme: ControlScheme,
@@ -59,8 +63,8 @@ pub struct Krc {
     fresh: bool,
     flags: u32,
     refused: Option<Refusal>,
-    /// The last answer jumped as well.
-    jumping: bool,
+    /// The last answer that was checked was refused as well.
+    refusing: bool,
     /// Cycles in a row that were good enough to begin.
     good: u64,
     passage: Passage,
@@ -77,18 +81,21 @@ pub struct Krc {
 }
 
 impl Krc {
-    /// In monitor state, holding `q0` \[rad\]; `speed_limit` \[rad/s\] is the data sheet's.
+    /// In monitor state, holding `q0` \[rad\]; `speed_limit` \[rad/s\] and `torque_limit`
+    /// \[Nm\] are the data sheet's.
     #[must_use]
     pub fn new(
         options: RobotOptions,
         cycle_s: f64,
         q0: &JointVector<f64>,
         speed_limit: &JointVector<f64>,
+        torque_limit: &JointVector<f64>,
     ) -> Self {
         Self {
             options,
             cycle_s,
             reach: speed_limit * (options.speed_factor * cycle_s),
+            torque_bound: torque_limit * options.torque_factor,
             commands: false,
             scheme: options.scheme,
             hold: *q0,
@@ -100,7 +107,7 @@ impl Krc {
             fresh: false,
             flags: 0,
             refused: None,
-            jumping: false,
+            refusing: false,
             good: 0,
             passage: Passage::none(cycles(options.fade_s, cycle_s), cycle_s),
             last: Driving::by_springs(Impedance::NONE),

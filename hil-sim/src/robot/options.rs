@@ -122,6 +122,8 @@ pub struct RobotOptions {
     pub entry_torque_nm: f64,
     /// Speed limit of jntPos over the data sheet's.
     pub speed_factor: f64,
+    /// Largest added torque over the joint's limit: more is damage, not an order.
+    pub torque_factor: f64,
     /// Largest jump of jntPos from the measured position on joints without
     /// stiffness, where it moves nothing \[rad\].
     pub jump_rad: f64,
@@ -150,6 +152,7 @@ impl Default for RobotOptions {
             entry_position_rad: 5e-3,
             entry_torque_nm: 1.0,
             speed_factor: 1.1,
+            torque_factor: 2.0,
             jump_rad: 0.1,
             stiffness: 1000.0,
             damping: 0.7,

@@ -66,6 +66,38 @@ fn a_jump_of_position_is_not_used() {
     assert!(link.said("jntPos of joint 2 jumps by"));
 }
 
+/// A damaged answer may order anything: neither motors nor figures take it.
+#[test]
+fn a_torque_that_no_client_can_mean_is_not_used() {
+    let mut link = Loop::new(robot(Ideal));
+    link.enter();
+    link.polite(600);
+    let row = [6.7e21, -f32::MAX, 76.1];
+    let mut torques = row.iter();
+    link.run(row.len(), |_, command| {
+        command.joint_torque[6] = *torques.next().expect("one each");
+        true
+    });
+    link.run(1, |_, command| {
+        command.user.real[..7].fill(-6.7e21);
+        true
+    });
+    assert_eq!(link.robot.state(), State::Command);
+    link.polite(1);
+    assert!(link.robot.plant().state().dq.amax() < 1e-3);
+    let summary = link.robot.summary();
+    let figures = summary.link.as_ref().expect("a link");
+    assert_eq!((figures.rejected.torque, figures.missed), (3, 3));
+    assert_eq!(figures.rejected.total(), 3);
+    assert!(figures.largest_torque_step_nm < 1.0);
+    assert!(link.said("addJntTrq of joint 7 is 67"));
+    let residual = &summary.residual;
+    assert!(
+        residual.rms_error_nm.is_some_and(|rms| rms < 200.0),
+        "{residual:?}"
+    );
+}
+
 /// With stiffness jntPos moves the arm, so it may only move as fast as the arm.
 #[test]
 fn the_speed_of_the_commanded_position_is_limited() {

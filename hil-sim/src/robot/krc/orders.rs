@@ -1,5 +1,7 @@
 //! Which answers may act, and what they change.
 
+use std::fmt;
+
 use controller_core::joint::{DOF, JointVector};
 use fri::ControlScheme;
 
@@ -16,6 +18,7 @@ impl Krc {
         } else {
             Ok(())
         };
+        self.refusing &= checked.is_err();
         self.refused = checked.err();
         if checked.is_ok() {
             self.take(order);
@@ -27,6 +30,7 @@ impl Krc {
         if order.flags != self.flags {
             return Err(Refusal::Flags);
         }
+        self.check_torque(order)?;
         let Some(position) = &order.position else {
             return Ok(());
         };
@@ -41,20 +45,39 @@ impl Krc {
                 ((position[joint] - q[joint]).abs(), self.options.jump_rad)
             };
             if moved > allowed {
-                // A row of them is one event.
-                if !std::mem::replace(&mut self.jumping, true) {
-                    self.say(format!(
-                        "jntPos of joint {} jumps by {:.1} mrad; allowed: {:.1}; answer not used",
-                        joint + 1,
-                        moved * 1e3,
-                        allowed * 1e3
-                    ));
-                }
+                self.refuse(format_args!(
+                    "jntPos of joint {} jumps by {:.1} mrad; allowed: {:.1}",
+                    joint + 1,
+                    moved * 1e3,
+                    allowed * 1e3
+                ));
                 return Err(Refusal::Jump);
             }
         }
-        self.jumping = false;
         Ok(())
+    }
+
+    fn check_torque(&mut self, order: &Order) -> Result<(), Refusal> {
+        let Some(torque) = &order.torque else {
+            return Ok(());
+        };
+        for (joint, (torque, &bound)) in (1..).zip(torque.iter().zip(&self.torque_bound)) {
+            // Not so of what is no number either.
+            if !(torque.abs() <= bound) {
+                self.refuse(format_args!(
+                    "addJntTrq of joint {joint} is {torque:.1} Nm; allowed: {bound:.0}"
+                ));
+                return Err(Refusal::Torque);
+            }
+        }
+        Ok(())
+    }
+
+    /// Tells why an answer is not used; a row of them is one event.
+    fn refuse(&mut self, why: fmt::Arguments<'_>) {
+        if !std::mem::replace(&mut self.refusing, true) {
+            self.say(format!("{why}; answer not used"));
+        }
     }
 
     /// Whether jntPos moves this joint.
