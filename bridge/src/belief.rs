@@ -6,9 +6,6 @@ use controller_core::arm::ArmParameters;
 use controller_core::joint::JointVector;
 use controller_core::ranges::SPEED_FACTOR;
 
-/// Positions in a row that are doubted; the next one counts whatever it is.
-const DOUBTED_MAX: u8 = 2;
-
 /// Doubts in a row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Belief {
@@ -16,8 +13,15 @@ pub(crate) struct Belief {
 }
 
 impl Belief {
-    /// Whether the arm cannot have moved by `way` \[rad\] in `interval_s` \[s\].
-    pub fn doubts(&mut self, arm: &ArmParameters, way: &JointVector<f64>, interval_s: f64) -> bool {
+    /// Whether the arm cannot have moved by `way` \[rad\] in `interval_s` \[s\]; of a row of
+    /// them that of the first `most`.
+    pub fn doubts(
+        &mut self,
+        most: u8,
+        arm: &ArmParameters,
+        way: &JointVector<f64>,
+        interval_s: f64,
+    ) -> bool {
         let mut joints = way.iter().zip(&arm.links);
         let follows =
             joints.all(|(way, link)| way.abs() <= SPEED_FACTOR * link.speed_limit * interval_s);
@@ -26,6 +30,6 @@ impl Belief {
         } else {
             self.doubted.saturating_add(1)
         };
-        (1..=DOUBTED_MAX).contains(&self.doubted)
+        (1..=most).contains(&self.doubted)
     }
 }

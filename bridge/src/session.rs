@@ -228,7 +228,8 @@ impl Session {
         let interval_s = self.cycle_s * (1.0 + f64::from(lost));
         self.last.is_some_and(|last| {
             let way = incoming.q - last.joints.q;
-            self.belief.doubts(&self.config.arm, &way, interval_s)
+            let (most, arm) = (self.config.doubted_max, &self.config.arm);
+            self.belief.doubts(most, arm, &way, interval_s)
         })
     }
 

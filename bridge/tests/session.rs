@@ -40,7 +40,10 @@ fn config_of(tasks: &[Task], duration_s: f64) -> SessionConfig {
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, duration_s)
+    SessionConfig {
+        doubted_max: 2,
+        ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, duration_s)
+    }
 }
 
 /// What a test wants, from the place of rest on.
