@@ -62,8 +62,9 @@ impl Krc {
             return Ok(());
         };
         for (joint, (torque, &bound)) in (1..).zip(torque.iter().zip(&self.torque_bound)) {
-            // Not so of what is no number either.
-            if !(torque.abs() <= bound) {
+            // What is no number is not meant either.
+            let meant = torque.abs() <= bound;
+            if !meant {
                 self.refuse(format_args!(
                     "addJntTrq of joint {joint} is {torque:.1} Nm; allowed: {bound:.0}"
                 ));
