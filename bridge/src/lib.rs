@@ -8,6 +8,7 @@
 //! - [`guide`]: from the wanted motion to the reference of a cycle, with
 //!   transitions that do not jump;
 //! - `wire`: what the session reads of a measurement and writes into an answer;
+//! - `belief`: which measured positions an arm can have reached;
 //! - `link_monitor`: counters, and whether the link carries a motion;
 //! - [`framing`]: datagrams on a serial line;
 //! - [`transport`]: the link under a session, and its form on a serial line;
@@ -26,6 +27,7 @@
 extern crate std;
 
 pub mod audit;
+mod belief;
 pub mod framing;
 pub mod guide;
 mod link_monitor;

@@ -8,6 +8,13 @@ use crate::wire::Incoming;
 /// damaged datagram that has passed its check.
 const JUMP_MAX: u16 = 1000;
 
+/// A gap of more than this is believed when the next datagram confirms it: a cycle more
+/// is lost then, and a damaged counter alone moves nothing.
+const GAP_MAX: u16 = 100;
+
+/// How long the link must have been sound at the end of a motion \[s\].
+const SOUND_S: f64 = 1.0;
+
 /// Datagrams in a row that do not fit the counters, after which they are believed:
 /// the robot has started again.
 const RESYNC: u8 = 10;
@@ -19,12 +26,16 @@ pub(crate) struct LinkMonitor {
     sender: Sender,
     /// Datagrams in a row that were not fresh.
     stale: u8,
+    /// The last counter, if it was too far ahead to be believed.
+    outlier: Option<u16>,
     /// What the robot mirrored last.
     reflected: u16,
     /// Cycles since that changed.
     unheard: u16,
-    /// Cycles since the last trouble.
+    /// Cycles since the last trouble, those in this spell of command state.
     clean: u16,
+    /// The same, lost cycles and all spells included.
+    calm: u32,
     bad: bool,
     /// Cycles since trouble began.
     pub bad_cycles: u32,
@@ -36,9 +47,11 @@ impl LinkMonitor {
             receiver: Receiver::new(),
             sender: Sender::starting_at(1),
             stale: 0,
+            outlier: None,
             reflected: 0,
             unheard: 0,
             clean: 0,
+            calm: u32::MAX,
             bad: false,
             bad_cycles: 0,
         }
@@ -51,15 +64,21 @@ impl LinkMonitor {
 
     /// Measurements lost before this one; none if it is not to be answered.
     pub fn arrival(&mut self, incoming: &Incoming<'_>) -> Option<u16> {
-        let mut probe = self.receiver;
+        let known = self.receiver;
+        let mut probe = known;
         let mut arrival = probe.receive(incoming.counter);
         if matches!(arrival, Arrival::Next { lost } if lost > JUMP_MAX) {
             arrival = Arrival::Old;
-            probe = self.receiver;
+            probe = known;
         }
         self.receiver = probe;
         let lost = match arrival {
             Arrival::First => 0,
+            Arrival::Next { lost } if lost > GAP_MAX && !self.confirms(incoming.counter) => {
+                self.receiver = known;
+                self.outlier = Some(incoming.counter);
+                return None;
+            }
             Arrival::Next { lost } => lost,
             Arrival::Repeated => return None,
             Arrival::Old => {
@@ -72,6 +91,7 @@ impl LinkMonitor {
             }
         };
         self.stale = 0;
+        self.outlier = None;
         let passed = lost.saturating_add(1);
         self.unheard = if incoming.reflected == self.reflected {
             self.unheard.saturating_add(passed)
@@ -80,6 +100,12 @@ impl LinkMonitor {
         };
         self.reflected = incoming.reflected;
         Some(lost)
+    }
+
+    /// Whether a counter goes on from the one that was not believed.
+    fn confirms(&self, counter: u16) -> bool {
+        let ahead = self.outlier.map(|outlier| counter.wrapping_sub(outlier));
+        ahead.is_some_and(|ahead| (1..=GAP_MAX).contains(&ahead))
     }
 
     /// Judges the link in this cycle: bad when more than `limit` measurements were
@@ -93,7 +119,9 @@ impl LinkMonitor {
             }
             self.bad = true;
             self.clean = 0;
+            self.calm = 0;
         } else {
+            self.calm = self.calm.saturating_add(1 + u32::from(lost));
             self.clean = self.clean.saturating_add(1);
             if self.clean >= resume {
                 self.bad = false;
@@ -103,6 +131,12 @@ impl LinkMonitor {
             self.bad_cycles = self.bad_cycles.saturating_add(1 + u32::from(lost));
         }
         self.bad
+    }
+
+    /// Whether the link was good for the last second, this cycle with `lost` before it
+    /// included.
+    pub fn was_sound(&self, lost: u16, limit: u16, cycle_s: f64) -> bool {
+        lost <= limit && f64::from(self.calm) * cycle_s >= SOUND_S
     }
 
     /// Whether, in this cycle, the motion is out of the controller's hands:

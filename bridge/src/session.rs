@@ -26,6 +26,7 @@ use controller_core::task::trajectory::quintic;
 use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, State};
 
 use crate::audit::Audit;
+use crate::belief::Belief;
 use crate::guide::{Guide, ReferenceSource};
 use crate::link_monitor::LinkMonitor;
 use crate::sent::SentTorques;
@@ -45,6 +46,7 @@ pub struct Session {
     sent: SentTorques,
     guide: Guide,
     link: LinkMonitor,
+    belief: Belief,
     phase: Phase,
     stop: Option<StopReason>,
     /// Whether it stops without braking first.
@@ -79,6 +81,7 @@ impl Session {
             sent: SentTorques::new(),
             guide,
             link: LinkMonitor::new(),
+            belief: Belief::default(),
             phase: Phase::Waiting,
             stop: None,
             halted: false,
@@ -175,9 +178,15 @@ impl Session {
             Ok(incoming) => incoming,
             Err(error) => return Outcome::Rejected(error),
         };
+        let before = self.link.clone();
         let Some(lost) = self.link.arrival(&incoming) else {
             return Outcome::Stale;
         };
+        if self.doubts(&incoming, lost) {
+            // As if it had not come.
+            self.link = before;
+            return Outcome::Doubted;
+        }
         if let Err(error) = self.take_cycle(&incoming) {
             return Outcome::Unusable(error);
         }
@@ -212,6 +221,16 @@ impl Session {
             sent: outgoing.torque(),
         });
         Outcome::Answered
+    }
+
+    /// Whether the arm cannot be where this measurement says, lost ones before it or not.
+    fn doubts(&mut self, incoming: &Incoming, lost: u16) -> bool {
+        let interval_s = self.cycle_s * (1.0 + f64::from(lost));
+        self.last.is_some_and(|last| {
+            let way = incoming.q - last.joints.q;
+            let (most, arm) = (self.config.doubted_max, &self.config.arm);
+            self.belief.doubts(most, arm, &way, interval_s)
+        })
     }
 
     /// Makes the controller for the robot's cycle, again if that changes before
@@ -249,9 +268,10 @@ impl Session {
             Some(first) => self.cycles_since(first) >= all,
         };
         if !incoming.robot.takes_torque() || self.config.dry {
+            let carried = self.config.dry || self.phase.is_in_command();
             self.leave_command();
             if over {
-                self.stop_for(StopReason::Done);
+                self.stop_for(self.ending(carried, lost));
             }
             self.phase = match self.phase {
                 Phase::Finished | Phase::Stopping => Phase::Finished,
@@ -276,7 +296,7 @@ impl Session {
         };
         let now = self.cycles_since(first);
         if over {
-            self.stop_for(StopReason::Done);
+            self.stop_for(self.ending(true, lost));
         }
         if self.state.fault().is_some() {
             self.stop_for(StopReason::Fault);
@@ -304,6 +324,20 @@ impl Session {
             _ if now < 0 => Phase::Starting,
             _ => Phase::Moving,
         };
+    }
+
+    /// What the end of the motion's time is: done only if the arm was `carried` to it on
+    /// a link that was sound.
+    fn ending(&self, carried: bool, lost: u16) -> StopReason {
+        if carried
+            && self
+                .link
+                .was_sound(lost, self.config.hold_after, self.cycle_s)
+        {
+            StopReason::Done
+        } else {
+            StopReason::Link
+        }
     }
 
     /// Command state begins: rest here, torque from zero.

@@ -11,7 +11,8 @@ fn damaged_datagrams_never_harm_a_session() {
         table.with_torque,
         table.rejected,
         table.stale,
-        table.ended,
     ];
     assert!(all.iter().all(|count| *count > 100), "{table}");
+    // Single damaged datagrams end no session: only rows of them do.
+    assert!((1..100).contains(&table.ended), "{table}");
 }

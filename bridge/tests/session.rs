@@ -40,7 +40,10 @@ fn config_of(tasks: &[Task], duration_s: f64) -> SessionConfig {
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, duration_s)
+    SessionConfig {
+        doubted_max: 2,
+        ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, duration_s)
+    }
 }
 
 /// What a test wants, from the place of rest on.
@@ -260,6 +263,68 @@ fn a_jump_of_the_counter_is_believed_only_when_it_stays() {
     assert_eq!(unanswered, 10);
 }
 
+/// Well-formed, and nothing that an arm can do: as if that measurement had been lost.
+#[test]
+fn one_position_that_cannot_be_is_a_lost_cycle() {
+    let mut robot = Robot::new(Session::new(config(60.0)));
+    robot.enter();
+    robot.cycles(1000);
+    let here = robot.measurement.joint_position;
+    for wrong in [0.5, -1e30] {
+        robot.measurement.joint_position[3] += wrong;
+        robot.measurement.header.counter += 1;
+        assert_eq!(robot.send().0, Outcome::Doubted);
+        robot.measurement.joint_position = here;
+        robot.cycles(1);
+        let cycle = robot.session.last().expect("a cycle");
+        assert_eq!((cycle.phase, cycle.lost), (Phase::Moving, 1));
+        robot.cycles(60);
+    }
+    assert!(robot.session.fault().is_none());
+    assert!(robot.session.last().expect("a cycle").joints.dq.amax() < 1e-9);
+}
+
+#[test]
+fn one_counter_far_ahead_is_a_lost_cycle_and_a_gap_that_stays_holds_the_arm() {
+    let mut robot = Robot::new(Session::new(config(60.0)));
+    robot.enter();
+    robot.cycles(1000);
+    let counter = robot.measurement.header.counter;
+    robot.measurement.header.counter = counter.wrapping_add(990);
+    assert_eq!(robot.send().0, Outcome::Stale);
+    robot.measurement.header.counter = counter.wrapping_add(1);
+    robot.cycles(100);
+    assert_eq!(robot.session.phase(), Phase::Moving);
+    let counter = robot.measurement.header.counter;
+    robot.measurement.header.counter = counter.wrapping_add(300);
+    assert!(robot.cycle().is_none());
+    assert!(robot.cycle().is_some());
+    let cycle = robot.session.last().expect("a cycle");
+    assert_eq!((cycle.phase, cycle.lost), (Phase::Holding, 301));
+}
+
+/// A motion whose time ran out while nothing was heard is not done.
+#[test]
+fn the_motion_is_over_only_on_a_sound_link() {
+    for (trouble, reason) in [(400, StopReason::Link), (900, StopReason::Done)] {
+        let mut robot = Robot::new(Session::new(config(1.0)));
+        robot.enter();
+        robot.cycles(1000 - trouble);
+        robot.measurement.header.counter += 6;
+        while robot.session.stop_reason().is_none() {
+            robot.cycle();
+        }
+        assert_eq!(robot.session.stop_reason(), Some(reason), "{trouble}");
+    }
+    // Not even in command state when it should have ended.
+    let mut robot = Robot::new(Session::new(config(1.0)));
+    robot.enter();
+    robot.cycles(700);
+    robot.measurement.state = InterfaceState::Monitor;
+    robot.cycles(400);
+    assert_eq!(robot.session.stop_reason(), Some(StopReason::Link));
+}
+
 #[test]
 fn a_gap_holds_the_arm_and_the_motion_is_joined_again() {
     let mut robot = Robot::new(Session::new(config(60.0)));
@@ -338,8 +403,9 @@ fn a_fault_of_the_controller_gives_the_arm_to_the_robot() {
     let mut robot = Robot::new(Session::new(config(60.0)));
     robot.enter();
     robot.cycles(1000);
-    // Joint 7 at 200 deg/cycle: no arm does that.
+    // Joint 7 at 0.5 rad in a cycle: no arm does that. Twice it is a damaged datagram.
     robot.measurement.joint_position[6] += 0.5;
+    assert!(robot.cycle().is_none() && robot.cycle().is_none());
     let answer = robot.cycle().expect("an answer");
     assert_eq!(answer.joint_torque, [0.0; 7]);
     let answer = robot.cycles(300);

@@ -1,16 +1,16 @@
 //! The command line, and one line for everything that cannot be used.
 
-use std::fmt::Write as _;
-use std::io::IsTerminal;
+mod telling;
+
 use std::net::{SocketAddr, UdpSocket};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use bridge::guide::ReferenceSource;
-use bridge::session::{CycleReport, Phase, RobotAdds, Session, SessionConfig};
+use bridge::session::{Phase, RobotAdds, Session, SessionConfig};
 use cell::arguments::usage;
 use cell::arguments::values::{address, number, peer, processor, whole};
 use cell::invalid::Invalid;
@@ -22,11 +22,12 @@ use clap::{Args, Parser, Subcommand};
 use controller_core::joint::JointVector;
 use controller_core::{Controller, Reference, TaskSet};
 
+use self::telling::{Flight, Teller, closing, place, prepare, unwritable};
 use crate::doctor;
 use crate::realtime::Realtime;
-use crate::recorder::{self, Recorder};
+use crate::recorder::Recorder;
 use crate::run::{Endpoint, converse};
-use crate::stream::Stream;
+use crate::stream::{Stream, StreamFigures};
 use crate::summary::Summary;
 
 /// How far the start posture may be required to be from the scenario's \[deg\].
@@ -35,16 +36,14 @@ const START_DEG: Range<f64> = Range::above(0.0, 360.0);
 /// How long references may stay away \[ms\].
 const TIMEOUT_MS: Range<f64> = Range::above(0.0, 10_000.0);
 
-/// Cycles kept for the case of a fault: 2 s at 2 ms.
-const FLIGHT: usize = 1000;
-
 /// The torque controller of a KUKA LWR on a PC: answers the robot's FRI
 /// datagrams.
 #[derive(Debug, Parser)]
 #[command(
     name = "firmware-host",
     version,
-    after_help = "Exit codes: 0 done, 2 usage or configuration error, 3 stopped by safety, 4 no robot."
+    after_help = "Exit codes: 0 done, 1 doctor: the cycle is not held, 2 usage or configuration error, \
+                  3 stopped by safety, 4 no robot."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -55,7 +54,7 @@ struct Cli {
 enum Command {
     /// Answer the robot until the motion is over
     Run(Box<RunOptions>),
-    /// Can this PC hold the cycle? Scheduling, jitter, latency, with advice
+    /// Can this PC hold the cycle? Scheduling, jitter, latency, with advice. Exit code 1: no
     #[command(allow_negative_numbers = true)]
     Doctor {
         #[arg(long, default_value_t = 2.0, value_parser = number(CYCLE_MS),
@@ -77,7 +76,7 @@ struct RunOptions {
     /// Address and port to which the robot sends
     #[arg(long, default_value = "127.0.0.1:49938", value_parser = address, value_name = "ADDR:PORT")]
     listen: SocketAddr,
-    /// Answer this address only [default: the first that sends a measurement]
+    /// Answer this address only [default: the first that sends three measurements in a row]
     #[arg(long, value_parser = peer, value_name = "ADDR:PORT")]
     peer: Option<SocketAddr>,
     #[arg(long, value_parser = number(DURATION_S),
@@ -101,6 +100,9 @@ struct RunOptions {
     /// orientation w x y z, angular velocity, angular acceleration (10 numbers; rad, s)
     #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
+    /// Take references from this address only [default: the first that sends one]
+    #[arg(long, requires = "references", value_parser = peer, value_name = "ADDR:PORT")]
+    references_from: Option<SocketAddr>,
     #[arg(long, default_value_t = 100.0, value_parser = number(TIMEOUT_MS),
         help = format!("Hold when no reference has come for so many ms, {TIMEOUT_MS}"))]
     reference_timeout_ms: f64,
@@ -148,13 +150,23 @@ fn examine(cycle_ms: f64, cpu: Option<usize>) -> Result<u8, Invalid> {
     let findings = doctor::examine(cycle_ms / 1e3, cpu)
         .map_err(|error| Invalid::line(error).within("loopback"))?;
     print(findings.report())?;
-    Ok(0)
+    Ok(u8::from(!findings.holds()))
 }
 
 /// Where references come from.
 enum Source {
     Scenario(ScenarioSource),
     Stream(Stream),
+}
+
+impl Source {
+    /// What came over the stream, if there is one.
+    fn figures(&self) -> Option<StreamFigures> {
+        match self {
+            Self::Scenario(_) => None,
+            Self::Stream(stream) => Some(stream.figures()),
+        }
+    }
 }
 
 impl ReferenceSource for Source {
@@ -249,7 +261,8 @@ impl RunOptions {
                 format!("within {wait} s")
             };
             tell(format_args!(
-                "error: no robot: no measurement came to {at} {until}"
+                "error: no robot: no measurement came to {at} {until}{}",
+                counts.refusals()
             ));
             return Ok(4);
         }
@@ -271,6 +284,7 @@ impl RunOptions {
         if let (Some(recorder), Some(path)) = (recorder.take(), &self.record) {
             recorded = recorder.finish().map_err(|error| unwritable(path, &error));
         }
+        summary.references = source.figures();
         summary.recorder_dropped = *recorded.as_ref().unwrap_or(&0);
         // A record that failed does not take the rest with it.
         self.report(&summary, &flight)?;
@@ -289,7 +303,7 @@ impl RunOptions {
             std::fs::write(path, flight.csv()).map_err(|error| unwritable(path, &error))?;
             tell(format_args!(
                 "the last {} cycles are in {}",
-                flight.cycles.len(),
+                flight.len(),
                 path.display()
             ));
         }
@@ -342,7 +356,7 @@ impl RunOptions {
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        Stream::listen(address, tasks, timeout)
+        Stream::listen(address, self.references_from, tasks, timeout)
             .map(Source::Stream)
             .map_err(|error| {
                 let allowed = format!("an address of this PC and a free port ({error})");
@@ -355,131 +369,4 @@ impl RunOptions {
         let degrees = self.require_start?;
         Some((scenario.start(), degrees.to_radians()))
     }
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> Invalid {
-    Invalid::new(
-        "file",
-        path.display(),
-        format_args!("a file that can be written ({error})"),
-    )
-}
-
-/// Makes the folder of a file that will be written at the end, and tries to
-/// write to it now: an hour of motion is a bad time to find out.
-fn prepare(path: &Path) -> Result<(), Invalid> {
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(|error| unwritable(path, &error))?;
-    }
-    let there = path.exists();
-    let file = std::fs::OpenOptions::new()
-        .append(true)
-        .create(true)
-        .open(path);
-    file.map(drop).map_err(|error| unwritable(path, &error))?;
-    if !there {
-        // It only had to be possible.
-        std::fs::remove_file(path).map_err(|error| unwritable(path, &error))?;
-    }
-    Ok(())
-}
-
-/// Where a file is or will be, whatever way its name goes; its folder is there.
-fn place(path: &Path) -> std::io::Result<PathBuf> {
-    if path.exists() {
-        return path.canonicalize();
-    }
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let folder = Path::new(".").join(folder).canonicalize()?;
-    Ok(folder.join(path.file_name().unwrap_or_default()))
-}
-
-/// The last cycles, in a ring that is taken once.
-struct Flight {
-    cycles: std::collections::VecDeque<CycleReport>,
-}
-
-impl Flight {
-    fn new() -> Self {
-        Self {
-            cycles: std::collections::VecDeque::with_capacity(FLIGHT),
-        }
-    }
-
-    fn push(&mut self, cycle: &CycleReport) {
-        if self.cycles.len() == FLIGHT {
-            self.cycles.pop_front();
-        }
-        self.cycles.push_back(*cycle);
-    }
-
-    fn csv(&self) -> Vec<u8> {
-        let mut text = Vec::new();
-        // Writing to memory does not fail.
-        let _ = recorder::write_rows(&mut text, self.cycles.iter().copied());
-        text
-    }
-}
-
-/// Tells what happens, a line per change of phase.
-struct Teller {
-    phase: Phase,
-    terminal: bool,
-}
-
-impl Teller {
-    fn new() -> Self {
-        Self {
-            phase: Phase::Waiting,
-            terminal: std::io::stderr().is_terminal(),
-        }
-    }
-
-    fn tell(&mut self, session: &Session, cycle: &CycleReport) {
-        if cycle.phase == self.phase {
-            return;
-        }
-        // Printing takes time and memory: rarely, and not while nobody looks.
-        if self.terminal || self.phase == Phase::Waiting {
-            let audit = crate::summary::AuditSummary::from(session.audit());
-            let mut line = format!("{:8.3} s  {}", cycle.t_s, cycle.phase.name());
-            if self.phase == Phase::Waiting {
-                let _ = write!(line, "; robot's model: {audit}");
-            }
-            tell(line);
-        }
-        self.phase = cycle.phase;
-    }
-}
-
-/// The closing lines.
-fn closing(summary: &Summary) -> String {
-    let mut text = format!(
-        "{}: {} answers, {}\n",
-        summary.scenario, summary.answered, summary.reason
-    );
-    for (number, level) in (1..).zip(&summary.levels) {
-        let (Some(rms), Some(max)) = (level.rms, level.max) else {
-            continue;
-        };
-        let _ = writeln!(
-            text,
-            "level {number} {}: rms {rms:.3}, max {max:.3} (mm, or mrad of an orientation; from measured positions)",
-            level.name
-        );
-    }
-    let link = &summary.link;
-    let rejected: u64 = link.rejected.values().sum();
-    let _ = writeln!(
-        text,
-        "link: {} lost, {} stale, {rejected} rejected, {} from strangers",
-        link.lost, link.stale, link.strangers
-    );
-    let _ = writeln!(text, "robot's model: {}", summary.audit);
-    let _ = writeln!(text, "compute: {}", summary.compute);
-    let _ = writeln!(text, "latency: {}", summary.latency);
-    text
 }

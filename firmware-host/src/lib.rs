@@ -5,6 +5,7 @@
 //!
 //! - [`cli`]: the command line;
 //! - [`run`]: the socket loop: one datagram in, one out;
+//! - [`peer`]: whom it answers;
 //! - [`realtime`]: scheduling, memory and processor as far as the system permits;
 //! - [`timing`]: histograms of compute time and latency;
 //! - [`recorder`]: every cycle to a file, without blocking the loop;
@@ -16,6 +17,7 @@
 
 pub mod cli;
 pub mod doctor;
+pub mod peer;
 pub mod realtime;
 pub mod recorder;
 pub mod run;

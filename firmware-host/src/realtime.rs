@@ -2,12 +2,9 @@
 //! permits. What it does not permit is said, not hidden.
 
 use serde::Serialize;
-use thread_priority::{
-    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
-    set_thread_priority_and_policy, thread_native_id,
-};
 
 /// Priority of the control thread, below that of the kernel's own threads.
+#[cfg(unix)]
 const PRIORITY: u8 = 80;
 
 /// What was asked for and what was given.
@@ -65,7 +62,12 @@ impl Realtime {
     }
 }
 
+#[cfg(unix)]
 fn fifo() -> Grant {
+    use thread_priority::{
+        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
+        set_thread_priority_and_policy, thread_native_id,
+    };
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let priority = match PRIORITY.try_into() {
         Ok(priority) => ThreadPriority::Crossplatform(priority),
@@ -81,6 +83,7 @@ fn fifo() -> Grant {
     }
 }
 
+#[cfg(unix)]
 fn reason(error: &thread_priority::Error) -> String {
     match error {
         thread_priority::Error::OS(code) => std::io::Error::from_raw_os_error(*code).to_string(),
@@ -114,6 +117,11 @@ fn own_cpu(cpu: usize) -> Grant {
             std::thread::available_parallelism().map_or(1, usize::from)
         )),
     }
+}
+
+#[cfg(not(unix))]
+fn fifo() -> Grant {
+    Grant::Refused("SCHED_FIFO is not on this system; it needs Linux".into())
 }
 
 #[cfg(not(target_os = "linux"))]

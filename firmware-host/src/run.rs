@@ -8,11 +8,13 @@ use std::time::{Duration, Instant};
 
 use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, CycleReport, Outcome, Phase, Session};
+use cell::terminal::tell;
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
 use controller_core::task::orientation;
 use controller_core::{Axes, Target, TaskSet};
 
+use crate::peer::{Peer, Refusal};
 use crate::realtime::Realtime;
 use crate::recorder::Recorder;
 use crate::summary::{AuditSummary, LevelSummary, LinkSummary, Summary, ending};
@@ -24,13 +26,20 @@ const BUFFER: usize = 2048;
 /// How often the loop looks up while nothing arrives.
 const LOOK_UP: Duration = Duration::from_millis(20);
 
+/// Answers after which a robot that falls silent is taken for gone; before, it is taken
+/// for a stray sender, and the loop waits on.
+const ACQUAINTED: u64 = 100;
+
+/// Silence after which another robot may come, until then.
+const STRAY: Duration = Duration::from_millis(500);
+
 /// Our end of the conversation: all that the loop needs besides a session.
 #[derive(Debug)]
 pub struct Endpoint<'a> {
     /// Bound to where the robot sends.
     pub socket: UdpSocket,
-    /// The only address that is answered; the first that sends a measurement if
-    /// none is given.
+    /// The only address that is answered; if none is given, the first that sends
+    /// measurements in a row.
     pub peer: Option<SocketAddr>,
     /// How long to wait for a first measurement.
     pub wait: Duration,
@@ -46,6 +55,9 @@ pub struct Endpoint<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct Counts {
     answered: u64,
+    refused: u64,
+    /// The last datagram that did not reach the session, and why.
+    last_refused: Option<(SocketAddr, Refusal)>,
     phases: [u64; PHASES.len()],
     link: LinkSummary,
     tracking: [Tracking; MAX_LEVELS],
@@ -85,6 +97,7 @@ pub fn converse(
     let mut counts = Counts::default();
     let (mut bytes, mut answer) = ([0; BUFFER], [0; ANSWER_LEN]);
     let mut heard = Instant::now();
+    let mut peer = Peer::new(end.peer);
     end.socket.set_read_timeout(Some(LOOK_UP))?;
     loop {
         if end.stop.load(Ordering::Relaxed) {
@@ -93,21 +106,16 @@ pub fn converse(
         match end.socket.recv_from(&mut bytes) {
             Ok((length, from)) => {
                 let begin = Instant::now();
-                let stranger = end.peer.is_some_and(|peer| peer != from);
                 let datagram = bytes.get(..length).unwrap_or(&bytes);
-                let outcome = if stranger {
-                    None
-                } else {
-                    Some(session.receive(datagram, source, &mut answer))
-                };
+                let admitted = peer.admit(from, datagram);
+                let outcome = admitted.map(|()| session.receive(datagram, source, &mut answer));
                 let computed = begin.elapsed();
                 match outcome {
-                    None => counts.link.strangers += 1,
-                    Some(Outcome::Answered) => {
+                    Err(why) => counts.refuse(from, why),
+                    Ok(Outcome::Answered) => {
                         end.socket.send_to(&answer, from)?;
                         let latency = begin.elapsed();
                         heard = begin;
-                        end.peer = Some(from);
                         counts.compute.add(computed);
                         counts.latency.add(latency);
                         if let Some(cycle) = session.last() {
@@ -118,9 +126,10 @@ pub fn converse(
                             each(session, cycle);
                         }
                     }
-                    Some(Outcome::Stale) => counts.link.stale += 1,
-                    Some(Outcome::Rejected(error)) => counts.reject(&error.to_string()),
-                    Some(Outcome::Unusable(error)) => {
+                    Ok(Outcome::Stale) => counts.link.stale += 1,
+                    Ok(Outcome::Doubted) => counts.refuse(from, Refusal::Doubted),
+                    Ok(Outcome::Rejected(error)) => counts.refuse(from, Refusal::Unusable(error)),
+                    Ok(Outcome::Unusable(error)) => {
                         return Err(io::Error::other(format!("the robot's cycle: {error}")));
                     }
                 }
@@ -134,11 +143,17 @@ pub fn converse(
             return Ok(counts);
         }
         // Looked at after every datagram: strangers that go on sending are no robot.
+        let stray = session.phase() == Phase::Ready && counts.answered < ACQUAINTED;
         let patience = match session.phase() {
             Phase::Waiting => end.wait,
+            Phase::Ready if stray => end.wait,
             _ => end.silence,
         };
         let silence = heard.elapsed();
+        if stray && silence > STRAY && peer.release() {
+            tell("note: the robot fell silent; waiting for it or another one");
+            session.silent();
+        }
         let stopped = session.stop_reason().is_some();
         if silence > patience || (stopped && silence > LOOK_UP * 10) {
             session.silent();
@@ -155,6 +170,26 @@ fn is_timeout(error: &io::Error) -> bool {
 }
 
 impl Counts {
+    fn refuse(&mut self, from: SocketAddr, why: Refusal) {
+        self.refused += 1;
+        self.last_refused = Some((from, why));
+        match why {
+            Refusal::Stranger(_) => self.link.strangers += 1,
+            Refusal::Unproven => self.link.unproven += 1,
+            Refusal::Unusable(_) | Refusal::Doubted => self.reject(&why.to_string()),
+        }
+    }
+
+    /// The datagrams that did not reach the session, as the end of a sentence.
+    #[must_use]
+    pub fn refusals(&self) -> String {
+        let Some((from, why)) = &self.last_refused else {
+            return String::new();
+        };
+        let count = self.refused;
+        format!("; {count} datagrams were refused, the last from {from}: {why}")
+    }
+
     fn reject(&mut self, reason: &str) {
         // Rare, so it may allocate; bounded, whatever arrives.
         const REASONS: usize = 32;
@@ -213,6 +248,7 @@ impl Counts {
             compute: self.compute.figures(),
             latency: self.latency.figures(),
             realtime: realtime.clone(),
+            references: None,
             recorder_dropped: 0,
         }
     }

@@ -11,15 +11,20 @@
 //! reference. Any other count of numbers, or a number out of range, and the datagram is
 //! refused as a whole.
 //!
+//! One sender is obeyed: the one that is named, or else the first whose datagram is a
+//! reference. Those of others are counted and have no effect.
+//!
 //! The references go through a bounded queue; of those that wait the newest
 //! counts. After [`Stream::timeout`] without one the arm is held, and joins again
 //! without a jump when the stream goes on.
 
 mod setpoint;
 
+use std::fmt;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
@@ -28,6 +33,7 @@ use bridge::guide::ReferenceSource;
 use cell::terminal::tell;
 use controller_core::joint::DOF;
 use controller_core::{Reference, TaskSet};
+use serde::Serialize;
 
 pub use setpoint::Setpoint;
 
@@ -36,6 +42,45 @@ const QUEUE: usize = 64;
 
 /// Longer than any UDP datagram: none is cut off within a number.
 const LONGEST: usize = 1 << 16;
+
+/// What became of the datagrams of a stream.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct StreamFigures {
+    /// Who is obeyed.
+    pub sender: Option<SocketAddr>,
+    /// References that were taken.
+    pub taken: u64,
+    /// Datagrams that are no reference.
+    pub unusable: u64,
+    /// Datagrams of other senders.
+    pub strangers: u64,
+    /// References that found the queue full.
+    pub crowded_out: u64,
+}
+
+impl fmt::Display for StreamFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} taken", self.taken)?;
+        if let Some(sender) = self.sender {
+            write!(f, " from {sender}")?;
+        }
+        write!(
+            f,
+            "; refused: {} unusable, {} of other senders, {} too many at once",
+            self.unusable, self.strangers, self.crowded_out
+        )
+    }
+}
+
+/// The same while they are counted, in the thread that receives.
+#[derive(Debug, Default)]
+struct Tally {
+    sender: OnceLock<SocketAddr>,
+    taken: AtomicU64,
+    unusable: AtomicU64,
+    strangers: AtomicU64,
+    crowded_out: AtomicU64,
+}
 
 /// The loop's end of the stream.
 #[derive(Debug)]
@@ -46,23 +91,32 @@ pub struct Stream {
     begun: bool,
     arrived: Option<Instant>,
     timeout: Duration,
-    refused: Arc<AtomicU64>,
+    tally: Arc<Tally>,
 }
 
 impl Stream {
-    /// Listens at `address` for references of levels that have these `tasks`; after
+    /// Listens at `address` for references of levels that have these `tasks`, from the
+    /// address `from` alone or, without one, from the first that sends one; after
     /// `timeout` without one the arm is held.
     ///
     /// # Errors
     /// The address cannot be bound.
-    pub fn listen(address: SocketAddr, tasks: &TaskSet, timeout: Duration) -> io::Result<Self> {
+    pub fn listen(
+        address: SocketAddr,
+        from: Option<SocketAddr>,
+        tasks: &TaskSet,
+        timeout: Duration,
+    ) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         let (sender, queue) = sync_channel(QUEUE);
         let stream = Self::from_channel(queue, timeout);
-        let (counter, tasks) = (Arc::clone(&stream.refused), *tasks);
+        let (tally, tasks) = (Arc::clone(&stream.tally), *tasks);
+        if let Some(from) = from {
+            tally.sender.get_or_init(|| from);
+        }
         std::thread::Builder::new()
             .name("references".into())
-            .spawn(move || receive(&socket, &tasks, &sender, &counter))?;
+            .spawn(move || receive(&socket, &tasks, &sender, &tally))?;
         Ok(stream)
     }
 
@@ -75,7 +129,7 @@ impl Stream {
             begun: false,
             arrived: None,
             timeout,
-            refused: Arc::default(),
+            tally: Arc::default(),
         }
     }
 
@@ -85,10 +139,17 @@ impl Stream {
         self.timeout
     }
 
-    /// Datagrams that were no reference, or found the queue full.
+    /// What has come so far.
     #[must_use]
-    pub fn refused(&self) -> u64 {
-        self.refused.load(Ordering::Relaxed)
+    pub fn figures(&self) -> StreamFigures {
+        let count = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        StreamFigures {
+            sender: self.tally.sender.get().copied(),
+            taken: count(&self.tally.taken),
+            unusable: count(&self.tally.unusable),
+            strangers: count(&self.tally.strangers),
+            crowded_out: count(&self.tally.crowded_out),
+        }
     }
 
     fn take(&mut self, setpoint: &Setpoint) {
@@ -123,13 +184,24 @@ impl ReferenceSource for Stream {
     }
 }
 
-fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, refused: &AtomicU64) {
+fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, tally: &Tally) {
     let mut bytes = vec![0; LONGEST];
-    let mut said = false;
+    let count = |counter: &AtomicU64| counter.fetch_add(1, Ordering::Relaxed);
+    // Once of a kind: a stream that is wrong is wrong a thousand times a second.
+    let note = |before: u64, text: &dyn fmt::Display| {
+        if before == 0 {
+            tell(format_args!("note: reference from {text}"));
+        }
+    };
     loop {
         let Ok((length, from)) = socket.recv_from(&mut bytes) else {
             return;
         };
+        if let Some(sender) = tally.sender.get().filter(|sender| **sender != from) {
+            let before = count(&tally.strangers);
+            note(before, &format_args!("{from} refused; allowed: {sender}"));
+            continue;
+        }
         let text = bytes
             .get(..length)
             .and_then(|bytes| std::str::from_utf8(bytes).ok());
@@ -137,18 +209,14 @@ fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, re
             .ok_or_else(|| "not text".to_string())
             .and_then(|text| Setpoint::parse(text, tasks));
         match setpoint {
-            Ok(setpoint) if queue.try_send(setpoint).is_ok() => {}
-            Ok(_) => {
-                refused.fetch_add(1, Ordering::Relaxed);
+            Ok(setpoint) => {
+                tally.sender.get_or_init(|| from);
+                match queue.try_send(setpoint) {
+                    Ok(()) => count(&tally.taken),
+                    Err(_) => count(&tally.crowded_out),
+                };
             }
-            Err(error) => {
-                refused.fetch_add(1, Ordering::Relaxed);
-                // Once: a stream that is wrong is wrong a thousand times a second.
-                if !said {
-                    tell(format_args!("note: reference from {from}: {error}"));
-                    said = true;
-                }
-            }
+            Err(error) => note(count(&tally.unusable), &format_args!("{from}: {error}")),
         }
     }
 }

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use bridge::audit::{Agreement, Audit};
-use bridge::session::{Phase, Session, StopReason};
+use bridge::session::{Phase, RobotState, Session, StopReason};
+use fri::{ControlScheme, InterfaceState};
 use serde::Serialize;
 
 use crate::realtime::Realtime;
+use crate::stream::StreamFigures;
 use crate::timing::TimeFigures;
 
 /// The whole run.
@@ -36,6 +38,8 @@ pub struct Summary {
     pub latency: TimeFigures,
     /// What the system gave.
     pub realtime: Realtime,
+    /// References that were streamed; none where the scenario is followed.
+    pub references: Option<StreamFigures>,
     /// Recorded cycles that found the queue full.
     pub recorder_dropped: u64,
 }
@@ -62,6 +66,8 @@ pub struct LinkSummary {
     pub rejected: BTreeMap<String, u64>,
     /// Datagrams from other addresses than the robot's.
     pub strangers: u64,
+    /// Measurements from addresses that did not send enough of them in a row.
+    pub unproven: u64,
 }
 
 /// The audit in words and numbers.
@@ -116,6 +122,47 @@ impl std::fmt::Display for AuditSummary {
     }
 }
 
+/// What keeps a robot in command state from taking torque.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstacle {
+    /// Its control scheme.
+    Scheme(ControlScheme),
+    /// Its drives.
+    DrivesOff,
+}
+
+impl Obstacle {
+    /// That of a robot, if it is in command state and has one.
+    #[must_use]
+    pub fn of(robot: &RobotState) -> Option<Self> {
+        if robot.state != InterfaceState::Command || robot.takes_torque() {
+            None
+        } else if robot.control == ControlScheme::JointImpedance {
+            Some(Self::DrivesOff)
+        } else {
+            Some(Self::Scheme(robot.control))
+        }
+    }
+}
+
+impl std::fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let scheme = match self {
+            Self::DrivesOff => return write!(f, "in command state with its drives off"),
+            Self::Scheme(scheme) => scheme,
+        };
+        let name = match scheme {
+            ControlScheme::Position => "position",
+            ControlScheme::CartesianImpedance => "Cartesian impedance",
+            _ => "other",
+        };
+        write!(
+            f,
+            "in command state with control scheme {name}; joint impedance is needed"
+        )
+    }
+}
+
 /// Exit code and reason of a session that has ended, or of one that never began.
 #[must_use]
 pub fn ending(session: &Session) -> (u8, String) {
@@ -123,12 +170,40 @@ pub fn ending(session: &Session) -> (u8, String) {
         (_, Phase::Waiting) => (4, "no robot: no measurement arrived".into()),
         (Some(StopReason::Done), _) => (0, "the motion is over".into()),
         (Some(StopReason::Asked), _) => (0, "stopped by request".into()),
-        (Some(StopReason::Link), _) => (3, "the link was bad for too long".into()),
+        (Some(StopReason::Link), _) => (3, "the link was lost".into()),
         (Some(StopReason::Fault), _) => {
             let fault = session.fault().map(|fault| fault.to_string());
             (3, fault.unwrap_or_else(|| "fault".into()))
         }
-        (None, Phase::Ready) => (4, "the robot fell silent without command state".into()),
+        (None, Phase::Ready) => match session.last().and_then(|cycle| Obstacle::of(&cycle.robot)) {
+            Some(obstacle) => (4, format!("the robot fell silent {obstacle}")),
+            None => (4, "the robot fell silent without command state".into()),
+        },
         (None, _) => (4, "the robot fell silent".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fri::Quality;
+
+    #[test]
+    fn what_keeps_a_robot_from_taking_torque_is_said() {
+        let mut robot = RobotState {
+            state: InterfaceState::Monitor,
+            quality: Quality::Perfect,
+            control: ControlScheme::Position,
+            drives_on: false,
+        };
+        assert_eq!(Obstacle::of(&robot), None);
+        robot.state = InterfaceState::Command;
+        let text = Obstacle::of(&robot).expect("two of them").to_string();
+        let expected = "in command state with control scheme position; joint impedance is needed";
+        assert_eq!(text, expected);
+        robot.control = ControlScheme::JointImpedance;
+        assert_eq!(Obstacle::of(&robot), Some(Obstacle::DrivesOff));
+        robot.drives_on = true;
+        assert_eq!(Obstacle::of(&robot), None);
     }
 }

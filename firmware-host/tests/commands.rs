@@ -100,6 +100,10 @@ const BAD: &[(&[&str], &[&str])] = &[
         &["--references", "an address of this PC"],
     ),
     (
+        &["run", "--references-from", "127.0.0.1:5600"],
+        &["--references"],
+    ),
+    (
         &[
             "run",
             "--references",
@@ -195,6 +199,35 @@ fn a_port_in_use_is_named_and_no_file_is_touched() {
             "of yesterday"
         );
     }
+}
+
+/// What came instead of a robot: how much, from whom, and what it should have been.
+#[test]
+fn datagrams_of_another_protocol_are_told() {
+    let address = {
+        let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        free.local_addr().expect("an address").to_string()
+    };
+    let stranger = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let from = stranger.local_addr().expect("an address");
+    let folder = tempfile::tempdir().expect("a folder");
+    let child = Command::new(env!("CARGO_BIN_EXE_firmware-host"))
+        .current_dir(folder.path())
+        .args(["run", "--listen", &address, "--wait", "1"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    for _ in 0..150 {
+        // Before the program there is nobody at that port.
+        let _ = stranger.send_to(&[7; 300], &address);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let output = child.wait_with_output().expect("the end");
+    let text = String::from_utf8(output.stderr).expect("text");
+    assert_eq!(output.status.code(), Some(4), "{text}");
+    let expected =
+        format!("datagrams were refused, the last from {from}: length: 300 bytes; allowed: 916");
+    assert!(text.contains(&expected), "{text}");
 }
 
 /// Strangers that go on sending are no robot, and do not keep the program alive.

@@ -62,6 +62,7 @@ fn the_loop_takes_no_memory_after_the_start() {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let here = socket.local_addr().expect("an address");
     let robot = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let peer = Some(robot.local_addr().expect("an address"));
     let sender = std::thread::spawn(move || {
         robot.connect(here).expect("loopback");
         let timeout = Some(Duration::from_secs(5));
@@ -80,7 +81,8 @@ fn the_loop_takes_no_memory_after_the_start() {
         .tasks;
     let mut end = Endpoint {
         socket,
-        peer: None,
+        // Named, so that the first measurement is answered.
+        peer,
         wait: Duration::from_secs(5),
         silence: Duration::from_millis(300),
         stop: &stop,

@@ -16,6 +16,7 @@ use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
 use controller_core::task::trajectory::Rotation;
 use controller_core::{Reference, Target, TaskSet};
+use firmware_host::peer::IN_A_ROW;
 use firmware_host::realtime::Realtime;
 use firmware_host::recorder;
 use firmware_host::run::{Endpoint, converse};
@@ -254,7 +255,7 @@ fn a_stream_of_nine_numbers_per_level_is_not_followed() {
         let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
         free.local_addr().expect("an address")
     };
-    let mut stream = Stream::listen(address, &tasks(&scenario), NEVER).expect("a free port");
+    let mut stream = Stream::listen(address, None, &tasks(&scenario), NEVER).expect("a free port");
     let planner = UdpSocket::bind("127.0.0.1:0").expect("a port");
     planner.connect(address).expect("loopback");
     let wrong = "-0.5 0 0.5 0 0 0 0 0 0 ".repeat(2);
@@ -262,8 +263,8 @@ fn a_stream_of_nine_numbers_per_level_is_not_followed() {
         planner.send(wrong.as_bytes()).expect("sent");
     }
     let deadline = Instant::now() + Duration::from_secs(20);
-    while stream.refused() < 20 {
-        assert!(Instant::now() < deadline, "{} refused", stream.refused());
+    while stream.figures().unusable < 20 {
+        assert!(Instant::now() < deadline, "{:?}", stream.figures());
         thread::sleep(Duration::from_millis(1));
     }
     let mut first = None;
@@ -287,7 +288,44 @@ fn a_stream_of_nine_numbers_per_level_is_not_followed() {
         Target::orientation([1.0, 0.0, 0.0, 0.0]),
     ];
     assert_eq!(sampled.expect("a reference").targets(), expected);
-    assert_eq!(stream.refused(), 20);
+    assert_eq!((stream.figures().unusable, stream.figures().taken), (20, 1));
+}
+
+/// Two planners at once would tear the arm to and fro: the first, or the one that is named.
+#[test]
+fn one_sender_is_obeyed_and_the_others_are_counted() {
+    let scenario = scenario();
+    let planners = [0, 1].map(|_| UdpSocket::bind("127.0.0.1:0").expect("a port"));
+    for (named, obeyed) in [(None, 0), (Some(1), 1)] {
+        let address = {
+            let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
+            free.local_addr().expect("an address")
+        };
+        let local = |index: usize| planners[index].local_addr().expect("an address");
+        let tasks = tasks(&scenario);
+        let mut stream =
+            Stream::listen(address, named.map(local), &tasks, NEVER).expect("a free port");
+        stream.start(&Reference::hold(2, [0.0; 7]));
+        assert!(stream.sample(0.0).is_none(), "the motion begins");
+        let deadline = Instant::now() + Duration::from_secs(20);
+        for (sent, (index, y)) in (1..).zip([(0, 0.1), (1, 0.2), (0, 0.3), (1, 0.4)]) {
+            let text = format!("-0.5 {y} 0.5 0 0 0 0 0 0");
+            planners[index]
+                .send_to(text.as_bytes(), address)
+                .expect("sent");
+            while stream.figures().taken + stream.figures().strangers < sent {
+                assert!(Instant::now() < deadline, "{:?}", stream.figures());
+                thread::sleep(Duration::from_millis(1));
+            }
+        }
+        let figures = stream.figures();
+        assert_eq!((figures.taken, figures.strangers), (2, 2));
+        assert_eq!(figures.sender, Some(local(obeyed)));
+        let text = figures.to_string();
+        assert!(text.contains("2 of other senders"), "{text}");
+        let place = place(&stream.sample(0.0).expect("a reference"));
+        assert_eq!(place.y, [0.3, 0.4][obeyed]);
+    }
 }
 
 /// Follows nothing for 0.5 s, then wants an orientation of level 1, which has none.
@@ -317,6 +355,11 @@ fn serve(scenario: &Scenario, to: SocketAddr) {
     let patience = Some(Duration::from_secs(5));
     socket.set_read_timeout(patience).expect("a timeout");
     let (mut measurement, mut answer) = ([0; MEASUREMENT_BYTES], [0; ANSWER_LEN]);
+    // These go without an answer: the third in a row proves a robot.
+    for _ in 1..IN_A_ROW {
+        robot.measurement(&mut measurement);
+        socket.send(&measurement).expect("sent");
+    }
     while !robot.is_finished() {
         robot.measurement(&mut measurement);
         if socket.send(&measurement).is_err() || socket.recv(&mut answer).is_err() {

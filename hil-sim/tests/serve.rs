@@ -249,6 +249,38 @@ fn without_client_the_exit_code_is_four() {
     }
 }
 
+/// A program of another protocol at the client's port is named by what it sends.
+#[test]
+fn datagrams_that_are_no_answers_are_told() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let timeout = Duration::from_millis(20);
+    socket.set_read_timeout(Some(timeout)).expect("a timeout");
+    let port = socket.local_addr().expect("an address").port();
+    let stop = AtomicBool::new(false);
+    let output = thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut bytes = [0; 2000];
+            while !stop.load(Ordering::Relaxed) {
+                if let Ok((_, robot)) = socket.recv_from(&mut bytes) {
+                    socket.send_to(&[7; 100], robot).expect("sent");
+                }
+            }
+        });
+        let output = serve(folder.path(), port, "--wait 0.3 --out o", "");
+        stop.store(true, Ordering::Relaxed);
+        output
+    });
+    assert_eq!(output.status.code(), Some(4));
+    let text = String::from_utf8_lossy(&output.stderr).to_string();
+    assert!(
+        text.contains(
+            "datagrams from there were refused, the last: length: 100 bytes; allowed: 376"
+        ),
+        "{text}"
+    );
+}
+
 #[test]
 fn quit_ends_the_run_with_its_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");

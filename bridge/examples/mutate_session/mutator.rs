@@ -84,7 +84,10 @@ fn session() -> Session {
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    Session::new(SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6))
+    Session::new(SessionConfig {
+        doubted_max: 2,
+        ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6)
+    })
 }
 
 fn measurement() -> Measurement {

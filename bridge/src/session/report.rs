@@ -58,7 +58,7 @@ pub enum StopReason {
     Asked,
     /// The controller latched a fault, see [`super::Session::fault`].
     Fault,
-    /// The link was bad for longer than allowed.
+    /// The link was bad for longer than allowed, or when the motion should have ended.
     Link,
 }
 
@@ -71,6 +71,9 @@ pub enum Outcome {
     Rejected(fri::Error),
     /// It was answered before, or is older than one that was: no answer.
     Stale,
+    /// No arm can be where it says, so soon after the last one: no answer. Several in a
+    /// row are believed.
+    Doubted,
     /// The controller cannot work at the robot's cycle: no answer.
     Unusable(ConfigError),
 }

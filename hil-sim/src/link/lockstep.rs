@@ -25,8 +25,8 @@ pub enum Expect {
 /// A client, wherever it runs.
 pub trait Peer {
     /// Gives it a measurement; its answers go to `answers`, in their order. False
-    /// where an answer was expected that reflects it and none came: after
-    /// [`Expect::Answer`] the client counts as gone.
+    /// where one was expected and none came, be it damaged or to another measurement:
+    /// after [`Expect::Answer`] the client counts as gone.
     ///
     /// # Errors
     /// Those of the transport.

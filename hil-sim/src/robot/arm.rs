@@ -64,6 +64,8 @@ pub struct Robot {
     pub(super) applied: Option<JointVector<f64>>,
     pub(super) stop: Option<Stop>,
     pub(super) ended_in_monitor: bool,
+    /// Why the last datagram that is no answer is none.
+    pub(super) unread: Option<fri::Error>,
 }
 
 /// Scenario time 0.
@@ -131,6 +133,7 @@ impl Robot {
             applied: None,
             stop: None,
             ended_in_monitor: false,
+            unread: None,
             setup,
         }
     }
@@ -198,6 +201,17 @@ impl Robot {
     #[must_use]
     pub fn has_begun(&self) -> bool {
         self.inbox.has_begun()
+    }
+
+    /// The datagrams that were not used, as the end of a sentence.
+    pub(crate) fn refused(&self) -> Option<String> {
+        let rejected = &self.counters.link.rejected;
+        let count = rejected.total();
+        let why = match &self.unread {
+            Some(error) => error.to_string(),
+            None => "reflects no measurement that was sent".to_string(),
+        };
+        (count > 0).then(|| format!("; {count} datagrams from there were refused, the last: {why}"))
     }
 
     /// Whether command state was never reached.

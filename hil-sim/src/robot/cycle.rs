@@ -47,12 +47,16 @@ impl Robot {
             Ok(order) => order,
             Err(error) => {
                 inbox::count_error(&mut self.counters.link.rejected, &error);
+                self.unread = Some(error);
                 return Answer::Rejected;
             }
         };
         let place = match self.inbox.place(&order, &mut self.counters.link) {
             Ok(place) => place,
-            Err(answer) => return answer,
+            Err(answer) => {
+                self.unread = None;
+                return answer;
+            }
         };
         if let Err(refusal) = self.krc.accept(&order, &q) {
             inbox::count_refusal(&mut self.counters.link.rejected, refusal);

@@ -60,8 +60,13 @@ impl Service {
     pub(super) fn hopeless(&self, robot: &Robot, begun: Clock) -> Option<End> {
         if !robot.has_begun() {
             let over = begun.elapsed() > Duration::from_secs_f64(self.wait_s);
-            let text = || format!("no answer from {} within {} s", self.client, self.wait_s);
-            return over.then(|| End::NoClient(text()));
+            return over.then(|| {
+                let seen = robot.refused().unwrap_or_default();
+                End::NoClient(format!(
+                    "no answer from {} within {} s{seen}",
+                    self.client, self.wait_s
+                ))
+            });
         }
         let over = robot.has_never_commanded() && robot.robot_time_s() > self.wait_s;
         over.then(|| {

@@ -62,9 +62,9 @@ impl Krc {
             return Ok(());
         };
         for (joint, (torque, &bound)) in (1..).zip(torque.iter().zip(&self.torque_bound)) {
-            // Not so of what is no number either.
-            let within = torque.abs() <= bound;
-            if !within {
+            // What is no number is not meant either.
+            let meant = torque.abs() <= bound;
+            if !meant {
                 self.refuse(format_args!(
                     "addJntTrq of joint {joint} is {torque:.1} Nm; allowed: {bound:.0}"
                 ));
