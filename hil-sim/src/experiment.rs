@@ -96,6 +96,10 @@ impl Experiment {
             progress(instant.t_s / self.scenario.duration_s);
             sink(instant)
         })?;
+        // The robot cannot know why its client gave up.
+        if let Some(fault) = client.session.fault() {
+            robot.abort(Stop::Fault(fault));
+        }
         Ok(Summary {
             controller: self.controller.name(),
             ..robot.summary()

@@ -169,3 +169,44 @@ fn a_posture_that_drifts_is_announced_with_how_far() {
     let said = run(&own, "--duration 1 --controller velocity-level");
     assert!(!said.notes.contains("drifts"), "{}", said.notes);
 }
+
+/// A fault is the verdict however the controller is linked: over FRI the robot sees of it
+/// that its client gives command state back.
+#[test]
+fn a_fault_is_not_lost_over_the_link() {
+    let text = std::fs::read_to_string("../cell/scenarios/two-level.toml").expect("built in");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("beyond.toml");
+    // A tenth of a turn beyond the reach of joint 1.
+    let far = text
+        .replace("name = \"two-level\"", "name = \"beyond\"")
+        .replace("start_deg = [0.0,", "start_deg = [169.0,")
+        .replace("radius_m = 0.1", "radius_m = 0.3");
+    std::fs::write(&file, far).expect("a file");
+    for measurement in ["direct", "fri"] {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+            .args([
+                "run",
+                "beyond.toml",
+                "--plant",
+                "ideal",
+                "--contacts",
+                "off",
+            ])
+            .args(["--measurement", measurement, "--out", measurement])
+            .current_dir(folder.path())
+            .output()
+            .expect("runs");
+        let text = std::fs::read_to_string(folder.path().join(measurement).join("summary.json"));
+        let summary: serde_json::Value =
+            serde_json::from_str(&text.expect("a summary")).expect("JSON");
+        assert_eq!(output.status.code(), Some(3), "{measurement}: {summary}");
+        assert_eq!(summary["verdict"], "stopped");
+        assert_eq!(summary["faults"]["implausible"], 1);
+        let reason = summary["reason"].as_str().expect("a reason");
+        assert!(
+            reason.starts_with("implausible: position [rad] of joint 1"),
+            "{reason}"
+        );
+    }
+}
