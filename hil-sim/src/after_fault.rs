@@ -43,17 +43,12 @@ impl Watch {
         }
     }
 
-    /// A cycle, that of the fault included. The arm rests from the last time on at which it
+    /// A cycle with a finite state, that of the fault included. The arm rests from the last time on at which it
     /// came to rest.
     pub fn add(&mut self, t_s: f64, truth: &JointState<f64>, mode: &'static str) {
         let seen = &mut self.seen;
-        let travel = (truth.q - self.start).amax().to_degrees();
-        // Not a comparison: NaN would be the smaller one.
-        seen.travel_deg = if travel > seen.travel_deg || travel.is_nan() {
-            travel
-        } else {
-            seen.travel_deg
-        };
+        let travel_deg = (truth.q - self.start).amax().to_degrees();
+        seen.travel_deg = seen.travel_deg.max(travel_deg);
         let rests = truth.dq.iter().all(|speed| speed.abs() < RESTING_SPEED);
         seen.rest_after_s = match seen.rest_after_s {
             _ if !rests => None,
