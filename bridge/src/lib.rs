@@ -5,8 +5,7 @@
 //! datagrams are the time, so the same [`session::Session`] runs behind a UDP socket, inside
 //! the simulator, and on a microcontroller.
 //!
-//! - [`guide`]: from the wanted motion to the reference of a cycle, with
-//!   transitions that do not jump;
+//! - [`source`]: where the wanted motion comes from;
 //! - `wire`: what the session reads of a measurement and writes into an answer;
 //! - `belief`: which measured positions an arm can have reached;
 //! - `link_monitor`: counters, and whether the link carries a motion;
@@ -29,9 +28,9 @@ extern crate std;
 pub mod audit;
 mod belief;
 pub mod framing;
-pub mod guide;
 mod link_monitor;
 mod sent;
 pub mod session;
+pub mod source;
 pub mod transport;
 mod wire;

@@ -20,16 +20,16 @@ mod report;
 
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::joint::{DOF, JointState, JointVector, zeros};
-use controller_core::ranges::INTERVAL_FACTORS;
+use controller_core::ranges::{HOLD_S, INTERVAL_FACTORS};
 use controller_core::real::Real;
 use controller_core::task::trajectory::quintic;
 use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, State};
 
 use crate::audit::Audit;
 use crate::belief::Belief;
-use crate::guide::{Guide, ReferenceSource};
 use crate::link_monitor::LinkMonitor;
 use crate::sent::SentTorques;
+use crate::source::ReferenceSource;
 use crate::wire::{Incoming, Outgoing, measured};
 
 pub use self::config::{RobotAdds, SessionConfig};
@@ -44,7 +44,8 @@ pub struct Session {
     state: State<f64>,
     velocity: VelocityEstimator<f64>,
     sent: SentTorques,
-    guide: Guide,
+    /// q_d of the last cycle with one \[rad\].
+    posture: JointVector<f64>,
     link: LinkMonitor,
     belief: Belief,
     phase: Phase,
@@ -72,14 +73,13 @@ impl Session {
     /// Waiting for the first datagram.
     #[must_use]
     pub fn new(config: SessionConfig) -> Self {
-        let guide = Guide::new(config.guide, &config.controller.tasks);
         Self {
             config,
             controller: None,
             state: State::new(),
             velocity: VelocityEstimator::new(CORNER_HZ),
             sent: SentTorques::new(),
-            guide,
+            posture: zeros(),
             link: LinkMonitor::new(),
             belief: Belief::default(),
             phase: Phase::Waiting,
@@ -139,10 +139,10 @@ impl Session {
         self.cycle_s
     }
 
-    /// The reference of the last cycle.
+    /// The controller's state.
     #[must_use]
-    pub fn reference(&self) -> &Reference<f64> {
-        self.guide.reference()
+    pub fn state(&self) -> &State<f64> {
+        &self.state
     }
 
     /// Brings the arm to rest and ends the session.
@@ -203,7 +203,7 @@ impl Session {
         let holding = self.hold.is_some() && incoming.robot.takes_torque();
         let outgoing = if self.phase.is_in_command() || holding || self.config.dry {
             self.state.set_applied_torque(&(acted + self.robot_part));
-            self.control(&incoming, joints, interval_s, lost, source)
+            self.control(&incoming, joints, interval_s, source)
         } else {
             Outgoing::mirror(&incoming)
         };
@@ -244,7 +244,7 @@ impl Session {
         self.config.controller.cycle_s = period;
         let controller = Controller::new(&self.config.arm, &self.config.controller)?;
         self.cycle_s = period;
-        self.guide.rest(&controller.rest_reference(&incoming.q));
+        self.posture = incoming.q;
         self.controller = Some(controller);
         Ok(())
     }
@@ -306,7 +306,7 @@ impl Session {
         self.phase = match self.phase {
             Phase::Stopping => {
                 self.stopping += 1 + u64::from(lost);
-                let rest_s = self.config.guide.brake_s + HANDOVER_S;
+                let rest_s = HOLD_S + HANDOVER_S;
                 if self.stopping as i64 > cycles(rest_s, self.cycle_s) {
                     Phase::Finished
                 } else {
@@ -346,7 +346,7 @@ impl Session {
             return;
         };
         let rest = controller.rest_reference(&incoming.q);
-        self.guide.rest(&rest);
+        self.posture = incoming.q;
         self.state.reset();
         self.in_command = 0;
         self.link.clear();
@@ -390,7 +390,6 @@ impl Session {
         incoming: &Incoming,
         joints: JointState<f64>,
         interval_s: f64,
-        lost: u16,
         source: &mut impl ReferenceSource,
     ) -> Outgoing {
         let Some(controller) = &self.controller else {
@@ -402,17 +401,13 @@ impl Session {
             (Phase::Moving, Some(t_s)) => source.sample(t_s),
             _ => None,
         };
-        if now == Some(0) && lost == 0 && self.phase == Phase::Moving {
-            // The motion starts at rest where the arm rests.
-            self.guide.follow();
-        }
         if self.phase == Phase::Holding && self.link.is_broken() {
             // The arm is where it drifted to: hold it there.
-            let mut place = controller.moving_reference(&joints);
-            place.posture = self.guide.reference().posture;
-            self.guide.brake_from(&place);
+            self.state.join_from_the_arm();
         }
-        let reference = self.guide.advance(wanted.as_ref(), interval_s);
+        let reference =
+            wanted.unwrap_or_else(|| Reference::hold(controller.level_count(), self.posture));
+        self.posture = reference.posture;
 
         // A gap longer than the core believes in.
         let [_, longest] = INTERVAL_FACTORS;
@@ -425,7 +420,7 @@ impl Session {
             dq: joints.dq,
             interval_s: if gap { self.cycle_s } else { interval_s },
         };
-        let step = controller.step(&mut self.state, &measurement, reference);
+        let step = controller.step(&mut self.state, &measurement, &reference);
         self.robot_part = match self.config.robot_adds {
             RobotAdds::Gravity => step.gravity,
             RobotAdds::GravityAndCoriolis => step.gravity + step.coriolis,
@@ -459,7 +454,7 @@ impl Session {
         let brake_s = if self.halted || self.state.fault().is_some() {
             0.0
         } else {
-            self.config.guide.brake_s
+            HOLD_S
         };
         let since = self.stopping as f64 * self.cycle_s - brake_s;
         let [share, ..] = quintic(since / HANDOVER_S);

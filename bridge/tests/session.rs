@@ -1,8 +1,8 @@
 //! The conversation, against a robot that stands still and says what the test wants.
 
 use bridge::audit::Agreement;
-use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
+use bridge::source::ReferenceSource;
 use controller_core::arm::dynamics::Dynamics;
 use controller_core::arm::kinematics::Kinematics;
 use controller_core::arm::{ArmModel, LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
@@ -60,6 +60,12 @@ impl ReferenceSource for Wanted {
 }
 
 /// A robot that does not move.
+/// What the levels and the posture follow.
+fn followed(session: &Session) -> Reference<f64> {
+    let controller = session.controller().expect("a first datagram");
+    controller.followed_reference(session.state())
+}
+
 struct Robot {
     measurement: Measurement,
     session: Session,
@@ -447,7 +453,7 @@ fn a_target_of_another_kind_is_a_fault_and_never_followed() {
         (
             &[Target::position([f64::NAN; 3]), facing],
             FaultKind::Implausible,
-            "target of level 1",
+            "distance [m] from the shoulder of the target of level 1",
         ),
     ];
     for (targets, kind, part) in cases {
@@ -462,7 +468,7 @@ fn a_target_of_another_kind_is_a_fault_and_never_followed() {
                 robot.cycles(5);
             }
             assert_eq!(robot.session.phase(), Phase::Moving, "{part}");
-            let before = robot.session.reference().targets()[0];
+            let before = followed(&robot.session).targets()[0];
             robot.source.0 = Reference::from_targets(targets, START).expect("not more than levels");
             let answer = robot.cycle().expect("an answer");
             assert_eq!(answer.joint_torque, [0.0; 7], "{part}");
@@ -471,7 +477,7 @@ fn a_target_of_another_kind_is_a_fault_and_never_followed() {
             assert!(fault.to_string().contains(part), "{fault}");
             let finite = kind == FaultKind::WrongTarget;
             assert!(
-                !finite || robot.session.reference().targets()[0] == before,
+                !finite || followed(&robot.session).targets()[0] == before,
                 "{part}"
             );
             let answer = robot.cycles(300);
@@ -488,14 +494,15 @@ fn a_level_that_holds_stays_where_it_came_to_rest() {
     let mut robot = Robot::new(Session::new(two_kinds()));
     robot.enter();
     robot.cycles(600);
-    let [place, facing] = *robot.session.reference().targets() else {
+    let before = followed(&robot.session);
+    let [place, facing] = *before.targets() else {
         panic!("two levels");
     };
     robot.source.0 = Reference::hold(2, START);
     robot.cycles(300);
     assert_eq!(robot.session.phase(), Phase::Moving);
     assert!(robot.session.fault().is_none());
-    assert_eq!(robot.session.reference().targets(), [place, facing]);
+    assert_eq!(followed(&robot.session).targets(), [place, facing]);
 }
 
 #[test]

@@ -104,6 +104,8 @@ enum {
   STRATUM_LIMIT_RANK = 97,
   // Limit: torque of a joint cut to its largest change per cycle.
   STRATUM_LIMIT_TORQUE_RATE = 98,
+  // Limit: a level, or the posture, on its way to a reference that jumped.
+  STRATUM_LIMIT_JOINING = 99,
 };
 
 // What a level tracks.
@@ -177,10 +179,10 @@ enum {
 };
 
 // Storage of a controller in words of 8 bytes.
-#define STRATUM_CONTROLLER_WORDS 640
+#define STRATUM_CONTROLLER_WORDS 664
 
 // Storage of a state in words of 8 bytes.
-#define STRATUM_STATE_WORDS 1024
+#define STRATUM_STATE_WORDS 1168
 
 // sizeof(StratumController).
 #define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)
@@ -198,13 +200,13 @@ enum {
 #define STRATUM_TEXT_SIZE 512
 
 // sizeof(StratumStatus).
-#define STRATUM_STATUS_SIZE 48
+#define STRATUM_STATUS_SIZE 56
 
 // sizeof(StratumReference).
 #define STRATUM_REFERENCE_SIZE 112
 
 // The version of the interface: numbers, structs and functions of this header.
-#define STRATUM_ABI_VERSION 3
+#define STRATUM_ABI_VERSION 4
 
 // Joints of an arm.
 #define STRATUM_JOINTS 7
@@ -355,6 +357,9 @@ typedef struct StratumStatus {
   uint32_t torque_rate;
   // What the cycle is part of, STRATUM_MODE_...
   StratumMode mode;
+  // STRATUM_LIMIT_JOINING: levels on their way to a reference that jumped, bit 0 is
+  // level 1; bit 7 is the posture.
+  uint32_t joining;
 } StratumStatus;
 
 #ifdef __cplusplus
@@ -396,12 +401,14 @@ StratumResult stratum_controller_init(struct StratumController *controller,
                                       const struct StratumSettings *settings);
 
 // Before the first cycle: nothing observed, no fault; the references keep every
-// level and the null space at the posture `q` in rad.
+// level and the null space at the posture `q` in rad, which must be one that the arm can
+// have (STRATUM_FAULT_IMPLAUSIBLE).
 StratumResult stratum_state_init(struct StratumState *state,
                                  const struct StratumController *controller,
                                  const double q[STRATUM_JOINTS]);
 
-// Sets all references to rest where the posture `q` in rad puts them.
+// Sets all references to rest where the posture `q` in rad puts them, one that the arm can
+// have (STRATUM_FAULT_IMPLAUSIBLE).
 StratumResult stratum_reference_hold(struct StratumState *state,
                                      const struct StratumController *controller,
                                      const double q[STRATUM_JOINTS]);
@@ -466,6 +473,10 @@ StratumResult stratum_applied(struct StratumState *state,
 
 // The next cycle comes after a gap that is too long to be an interval.
 StratumResult stratum_skip(struct StratumState *state);
+
+// The next references are followed as they are: a jump is not joined. For callers whose
+// references start where the arm is, or who join them themselves.
+StratumResult stratum_follow_at_once(struct StratumState *state);
 
 // Clears a latched fault; the observer starts anew, the references stay.
 StratumResult stratum_reset(struct StratumState *state);

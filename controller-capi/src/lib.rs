@@ -151,7 +151,8 @@ pub unsafe extern "C" fn stratum_controller_init(
 }
 
 /// Before the first cycle: nothing observed, no fault; the references keep every
-/// level and the null space at the posture `q` in rad.
+/// level and the null space at the posture `q` in rad, which must be one that the arm can
+/// have (STRATUM_FAULT_IMPLAUSIBLE).
 /// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_state_init(
@@ -163,12 +164,24 @@ pub unsafe extern "C" fn stratum_state_init(
     code(unsafe {
         border::fill(state, |place| {
             let controller = border::held(controller)?;
-            let q = finite(border::array::<STRATUM_JOINTS>(q)?)?.into();
+            let q = posture(controller, border::array(q)?)?;
             let held = Held::new(place);
             held.rest(controller, &q);
             Ok(held)
         })
     })
+}
+
+/// A posture that an arm can have, as a cycle would believe it.
+fn posture(
+    controller: &Controller<Scalar>,
+    q: [f64; STRATUM_JOINTS],
+) -> Result<JointVector<Scalar>, StratumResult> {
+    let q = finite(q)?.into();
+    match controller.believe_posture(&q) {
+        Ok(()) => Ok(q),
+        Err(fault) => Err(codes::of_fault(fault.kind)),
+    }
 }
 
 impl Held {
@@ -182,7 +195,8 @@ impl Held {
     }
 }
 
-/// Sets all references to rest where the posture `q` in rad puts them.
+/// Sets all references to rest where the posture `q` in rad puts them, one that the arm can
+/// have (STRATUM_FAULT_IMPLAUSIBLE).
 /// cbindgen:ptrs-as-arrays=[[q;STRATUM_JOINTS]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_reference_hold(
@@ -194,7 +208,7 @@ pub unsafe extern "C" fn stratum_reference_hold(
     code(unsafe { border::held_mut(state) }.and_then(|held| {
         // SAFETY: likewise.
         let (controller, q) = unsafe { (border::held(controller)?, border::array(q)?) };
-        held.rest(controller, &finite::<STRATUM_JOINTS>(q)?.into());
+        held.rest(controller, &posture(controller, q)?);
         Ok(())
     }))
 }
@@ -327,12 +341,14 @@ pub unsafe extern "C" fn stratum_status(
             saturated,
             rank,
             rate_limited,
+            joining,
         } = held.step.status;
         let mut answer = StratumStatus {
             saturated: u32::from(saturated.0),
             rank: u32::from(rank.0),
             torque_rate: u32::from(rate_limited.0),
             mode: u32::from(mode.number()),
+            joining: u32::from(joining.0),
             ..StratumStatus::default()
         };
         if let Some(fault) = fault {
@@ -436,6 +452,14 @@ pub unsafe extern "C" fn stratum_applied(
 pub unsafe extern "C" fn stratum_skip(state: *mut StratumState) -> StratumResult {
     // SAFETY: the contract of the header.
     code(unsafe { border::held_mut(state) }.map(|held| held.state.resume_after_gap()))
+}
+
+/// The next references are followed as they are: a jump is not joined. For callers whose
+/// references start where the arm is, or who join them themselves.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_follow_at_once(state: *mut StratumState) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe { border::held_mut(state) }.map(|held| held.state.follow_at_once()))
 }
 
 /// Clears a latched fault; the observer starts anew, the references stay.

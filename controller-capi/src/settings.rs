@@ -28,7 +28,7 @@ use crate::constants::{
 use crate::scalar::Scalar;
 
 /// The version of the interface: numbers, structs and functions of this header.
-pub const STRATUM_ABI_VERSION: u32 = 3;
+pub const STRATUM_ABI_VERSION: u32 = 4;
 /// Joints of an arm.
 pub const STRATUM_JOINTS: usize = 7;
 /// Most levels.

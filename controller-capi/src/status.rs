@@ -29,8 +29,11 @@ pub struct StratumStatus {
     pub torque_rate: u32,
     /// What the cycle is part of, STRATUM_MODE_...
     pub mode: StratumMode,
+    /// STRATUM_LIMIT_JOINING: levels on their way to a reference that jumped, bit 0 is
+    /// level 1; bit 7 is the posture.
+    pub joining: u32,
 }
 
 /// sizeof(StratumStatus).
-pub const STRATUM_STATUS_SIZE: usize = 48;
+pub const STRATUM_STATUS_SIZE: usize = 56;
 const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);

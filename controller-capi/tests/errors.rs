@@ -209,7 +209,7 @@ fn numbers_that_are_not_finite_change_nothing() {
         };
         assert_eq!(stratum_reference_set(s, 1, &reference), STRATUM_OK);
         let answer = stratum_step(c, s, q, zero, 0.002, t);
-        assert_eq!(answer, fault(FaultKind::NonFiniteTorque));
+        assert_eq!(answer, fault(FaultKind::Implausible));
         assert_eq!(stratum_state_init(s, c, bad), STRATUM_ERROR_NON_FINITE);
     }
 }
@@ -393,7 +393,7 @@ type Case = (fn(&mut StratumSettings), StratumResult, &'static str);
 fn every_refusal_of_settings_names_thing_value_and_allowed() {
     #[rustfmt::skip]
     let cases: [Case; 24] = [
-        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 3"),
+        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 4"),
         (|s| s.level_count = 8, STRATUM_CONFIG_LEVELS, "level_count is 8; allowed 1 to 7"),
         (|s| s.level_count = 0, STRATUM_CONFIG_LEVELS, "level_count is 0; allowed 1 to 7"),
         (|s| s.levels[0].task = 2, STRATUM_CONFIG_CHOICE, "level 1: task is 2; allowed 0 to 1"),

@@ -30,6 +30,8 @@ fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
             let Some((measurement, reference)) = next.next() else {
                 unreachable!("the states go round");
             };
+            // References of random places are no motion: joining them is another path.
+            state.follow_at_once();
             step(
                 black_box(&case.controller),
                 &mut state,

@@ -31,6 +31,8 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
             state.reset();
             let _ = case.controller.step(&mut state, &measurement, &reference);
         }
+        // References of random places are no motion: joining them is another path.
+        state.follow_at_once();
         let step = step(
             black_box(&case.controller),
             black_box(&mut state),
@@ -74,6 +76,7 @@ fn resolutions<T: Real>(case: &Case<T>, inputs: &[Input]) {
     for input in inputs {
         let (measurement, reference) = case.typed(input);
         let mut state = ResolverState::new(measurement.q);
+        state.follow_at_once();
         let resolution = resolve(
             black_box(&case.resolver),
             black_box(&mut state),

@@ -9,6 +9,8 @@
 
 use core::fmt;
 
+use crate::real::Real;
+
 /// Calls `$define!` with every fault (32 to 95) and every limit (96 to 159):
 /// `Variant = number, "name", CNAME, "meaning";`. A number is never used twice, not
 /// even after its meaning is gone.
@@ -32,6 +34,8 @@ macro_rules! numbers {
                     "task row without acceleration: the rows above leave no motion for it";
                 TorqueRate = 98, "torque_rate", "TORQUE_RATE",
                     "torque of a joint cut to its largest change per cycle";
+                Joining = 99, "joining", "JOINING",
+                    "a level, or the posture, on its way to a reference that jumped";
             }
         }
     };
@@ -135,8 +139,16 @@ pub enum Quantity {
     Speed,
     /// h, the measured interval \[s\].
     Interval,
-    /// A number of the target of a level.
-    Target,
+    /// Distance of the target of a level from the shoulder \[m\].
+    TargetDistance,
+    /// Desired speed of a level \[m/s\].
+    TargetSpeed,
+    /// Desired acceleration of a level \[m/s2\].
+    TargetAcceleration,
+    /// Desired angular speed of a level \[rad/s\].
+    TargetAngularSpeed,
+    /// Desired angular acceleration of a level \[rad/s2\].
+    TargetAngularAcceleration,
     /// The squared norm of the desired orientation of a level.
     Orientation,
     /// The kind of the target of a level: [`POSITION_CODE`] or [`ORIENTATION_CODE`].
@@ -163,7 +175,11 @@ impl Quantity {
             Self::Position => "position [rad] of joint",
             Self::Speed => "speed [rad/s] of joint",
             Self::Interval => "measured interval [s]",
-            Self::Target => "target of level",
+            Self::TargetDistance => "distance [m] from the shoulder of the target of level",
+            Self::TargetSpeed => "desired speed [m/s] of level",
+            Self::TargetAcceleration => "desired acceleration [m/s2] of level",
+            Self::TargetAngularSpeed => "desired angular speed [rad/s] of level",
+            Self::TargetAngularAcceleration => "desired angular acceleration [rad/s2] of level",
             Self::Orientation => "squared quaternion norm of level",
             Self::TargetKind => "kind of target of level",
             Self::PostureReference => "desired posture [rad] of joint",
@@ -209,7 +225,11 @@ impl fmt::Display for Fault {
             let (given, allowed) = (word(self.value), word(self.min));
             return write!(f, " is {given}; allowed hold or {allowed}");
         }
-        write!(f, " is {}; ", self.value)?;
+        if self.value.magnitude() < 1e9 {
+            write!(f, " is {}; ", self.value)?;
+        } else {
+            write!(f, " is {:e}; ", self.value)?;
+        }
         if self.min == f64::MIN {
             write!(f, "it must be finite")
         } else {
@@ -287,6 +307,17 @@ pub struct Status {
     pub rank: IndexSet,
     /// Joints of [`LimitKind::TorqueRate`].
     pub rate_limited: IndexSet,
+    /// Levels of [`LimitKind::Joining`]; bit 7, the eighth, is the posture.
+    pub joining: IndexSet,
+}
+
+/// The limits of a cycle without a fault, as in [`Status`].
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    pub saturated: IndexSet,
+    pub rank: IndexSet,
+    pub rate_limited: IndexSet,
+    pub joining: IndexSet,
 }
 
 impl Status {
@@ -297,16 +328,19 @@ impl Status {
         saturated: IndexSet::NONE,
         rank: IndexSet::NONE,
         rate_limited: IndexSet::NONE,
+        joining: IndexSet::NONE,
     };
 
     /// A cycle without a fault, with the limits that were active.
     #[inline(always)]
-    pub(crate) const fn running(
-        saturated: IndexSet,
-        rank: IndexSet,
-        rate_limited: IndexSet,
-    ) -> Self {
-        let limited = saturated.0 | rank.0 | rate_limited.0 != 0;
+    pub(crate) const fn running(limits: Limits) -> Self {
+        let Limits {
+            saturated,
+            rank,
+            rate_limited,
+            joining,
+        } = limits;
+        let limited = saturated.0 | rank.0 | rate_limited.0 | joining.0 != 0;
         Self {
             mode: if limited {
                 Mode::Limited
@@ -317,6 +351,7 @@ impl Status {
             saturated,
             rank,
             rate_limited,
+            joining,
         }
     }
 
@@ -332,6 +367,7 @@ impl Status {
             (LimitKind::Saturated, self.saturated),
             (LimitKind::Rank, self.rank),
             (LimitKind::TorqueRate, self.rate_limited),
+            (LimitKind::Joining, self.joining),
         ];
         active
             .into_iter()

@@ -53,6 +53,35 @@ pub const MOVING_SPEED: f64 = 0.05;
 /// followed any more \[s\]: the drives' own brakes close in less.
 pub const BLIND_FADE_S: f64 = 0.5;
 
+/// Farthest beyond the outstretched arm that a target may be \[m\]: nearer ones that cannot
+/// be reached are served as far as can be.
+pub const REACH_MARGIN_M: f64 = 0.5;
+
+/// Largest |dx_d| \[m/s\] and |w_d| \[rad/s\].
+pub const TARGET_SPEED_MAX: [f64; 2] = [20.0, 200.0];
+
+/// Largest |ddx_d| \[m/s2\] and |dw_d| \[rad/s2\].
+pub const TARGET_ACCELERATION_MAX: [f64; 2] = [500.0, 5000.0];
+
+/// Multiple of the range of a joint within which q_d must be.
+pub const POSTURE_FACTOR: f64 = 2.0;
+
+/// From this on a target is elsewhere than the one before it leads to: position \[m\] and
+/// orientation \[rad\].
+pub const JUMP: [f64; 2] = [5e-3, 0.05];
+
+/// The same of a joint of q_d between two cycles \[rad\].
+pub const POSTURE_JUMP: f64 = 0.05;
+
+/// Shortest time in which a jump is joined \[s\].
+pub const JOIN_S: f64 = 0.3;
+
+/// Mean speed at which a far jump is joined \[m/s\], \[rad/s\].
+pub const JOIN_SPEED: [f64; 2] = [0.25, 0.5];
+
+/// Time in which a level that holds comes to rest \[s\].
+pub const HOLD_S: f64 = 0.2;
+
 /// Largest h K of a resolver: the error of a level shrinks without changing its sign.
 pub const RESOLVER_GAIN_BOUND: f64 = 1.0;
 

@@ -18,17 +18,18 @@
 
 use crate::arm::kinematics::Kinematics;
 use crate::arm::{ArmModel, ArmParameters};
-use crate::cycle::measurement::{Measurement, believe, within};
-use crate::cycle::usable::usable;
+use crate::cycle::Input;
+use crate::cycle::measurement::{Measurement, within};
+use crate::cycle::usable::admit;
 use crate::error::ConfigError;
-use crate::fault::{Fault, IndexSet, Mode, Quantity, Status};
+use crate::fault::{Fault, IndexSet, Limits, Mode, Quantity, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::hierarchy::Hierarchy;
 use crate::linalg::Cholesky;
 use crate::ranges::{COMMAND_LEAD_MAX, CYCLE_RANGE_S, GAIN_MAX, RESOLVER_GAIN_BOUND};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
-use crate::task::{HeldPlaces, Levels, Reference, TaskSet};
+use crate::task::{Followed, Levels, Reference, TaskSet};
 
 /// What a resolver is made of, besides the arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +58,7 @@ pub struct Resolver<T: Real> {
 pub struct ResolverState<T: Real> {
     commanded: JointVector<T>,
     fault: Option<Fault>,
-    held_places: HeldPlaces<T>,
+    followed: Followed<T>,
     kinematics: Kinematics<T>,
     rows: TaskRows<T>,
     hierarchy: Hierarchy<T>,
@@ -85,7 +86,7 @@ impl<T: Real> ResolverState<T> {
         Self {
             commanded,
             fault: None,
-            held_places: HeldPlaces::new(),
+            followed: Followed::new(),
             kinematics: Kinematics::new(),
             rows: TaskRows::new(),
             hierarchy: Hierarchy::new(),
@@ -98,10 +99,15 @@ impl<T: Real> ResolverState<T> {
         self.fault
     }
 
-    /// Clears a latched fault and forgets held places; the commanded position stays.
+    /// Clears a latched fault and forgets what was followed; the commanded position stays.
     pub fn reset(&mut self) {
         self.fault = None;
-        self.held_places = HeldPlaces::new();
+        self.followed = Followed::new();
+    }
+
+    /// The next reference is followed as it is: a jump is not joined.
+    pub fn follow_at_once(&mut self) {
+        self.followed.follow_at_once();
     }
 
     fn held(&mut self, fault: Fault) -> Resolution<T> {
@@ -141,7 +147,8 @@ impl<T: Real> Resolver<T> {
         let damping = T::from_f64(2.0 / cycle_s);
         Ok(Self {
             arm,
-            levels: Levels::new(tasks).with_gains(damping * T::from_f64(gain), damping),
+            levels: Levels::new(tasks, arm.parameters())
+                .with_gains(damping * T::from_f64(gain), damping),
             cycle_s: T::from_f64(cycle_s),
         })
     }
@@ -156,12 +163,12 @@ impl<T: Real> Resolver<T> {
         measurement: &Measurement<T>,
         reference: &Reference<T>,
     ) -> Resolution<T> {
-        let admitted = match state.fault {
-            Some(fault) => Err(fault),
-            None => believe(&self.arm, self.cycle_s, measurement)
-                .and_then(|()| usable(reference, &self.levels)),
+        let input = Input {
+            measurement,
+            reference,
         };
-        let resolved = admitted.and_then(|()| self.resolve(state, &measurement.q, reference));
+        let admitted = admit(state.fault, &self.arm, &self.levels, self.cycle_s, &input);
+        let resolved = admitted.and_then(|()| self.resolve(state, &input));
         match resolved {
             Ok(dq) => self.answer(state, &measurement.q, &dq),
             Err(fault) => state.held(fault),
@@ -172,20 +179,16 @@ impl<T: Real> Resolver<T> {
     fn resolve(
         &self,
         state: &mut ResolverState<T>,
-        q: &JointVector<T>,
-        reference: &Reference<T>,
+        input: &Input<'_, T>,
     ) -> Result<JointVector<T>, Fault> {
         // Seen at rest, what a level commands is ddx_d + 2/h (dx_d + K (x_d - x)).
+        let Measurement { q, interval_s, .. } = input.measurement;
         let at_rest = JointState { q: *q, dq: zeros() };
         let (rows, hierarchy) = (&mut state.rows, &mut state.hierarchy);
         state.kinematics.update(&self.arm, &at_rest);
-        rows.update(
-            &self.levels,
-            reference.targets(),
-            &mut state.held_places,
-            &state.kinematics,
-            &at_rest,
-        );
+        let (followed, kinematics) = (&mut state.followed, &state.kinematics);
+        followed.update(&self.levels, input.reference, kinematics, q, *interval_s);
+        rows.update(&self.levels, &state.followed, &state.kinematics, &at_rest);
         let half = T::from_f64(0.5) * self.cycle_s;
         let velocity = rows.commanded.map(|acceleration| acceleration * half);
         hierarchy.update(rows, &Cholesky::identity());
@@ -225,7 +228,12 @@ impl<T: Real> Resolver<T> {
         Resolution {
             q: state.commanded,
             dq,
-            status: Status::running(saturated, state.hierarchy.deficient(), IndexSet::NONE),
+            status: Status::running(Limits {
+                saturated,
+                rank: state.hierarchy.deficient(),
+                rate_limited: IndexSet::NONE,
+                joining: state.followed.joining(),
+            }),
         }
     }
 }

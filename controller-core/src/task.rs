@@ -2,6 +2,8 @@
 //! make together.
 
 mod axes;
+mod decay;
+mod followed;
 pub mod orientation;
 pub mod rows;
 mod set;
@@ -9,7 +11,7 @@ mod target;
 pub mod trajectory;
 
 pub use axes::Axes;
+pub use followed::Followed;
 pub(crate) use set::{LevelPoint, Levels};
 pub use set::{Task, TaskGains, TaskSet, Tracked};
-pub(crate) use target::HeldPlaces;
 pub use target::{Reference, Target};

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use bridge::guide::ReferenceSource;
 use bridge::session::{Phase, RobotAdds, Session, SessionConfig};
+use bridge::source::ReferenceSource;
 use cell::arguments::usage;
 use cell::arguments::values::{address, number, peer, processor, whole};
 use cell::invalid::Invalid;

@@ -6,8 +6,8 @@ use std::net::{SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use bridge::guide::ReferenceSource;
 use bridge::session::{ANSWER_LEN, CycleReport, Outcome, Phase, Session};
+use bridge::source::ReferenceSource;
 use cell::terminal::tell;
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
@@ -210,7 +210,8 @@ impl Counts {
         };
         let actual = controller.rest_reference(&cycle.joints.q);
         let levels = tasks.tasks().iter().zip(&mut self.tracking);
-        let targets = session.reference().targets().iter().zip(actual.targets());
+        let followed = controller.followed_reference(session.state());
+        let targets = followed.targets().iter().zip(actual.targets());
         for ((task, tracking), (wanted, actual)) in levels.zip(targets) {
             if let Some(error) = deviation(wanted, actual) {
                 tracking.add(norm(task.axes, &error));

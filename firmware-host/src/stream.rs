@@ -29,7 +29,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
-use bridge::guide::ReferenceSource;
+use bridge::source::ReferenceSource;
 use cell::terminal::tell;
 use controller_core::joint::DOF;
 use controller_core::{Reference, TaskSet};

@@ -139,6 +139,8 @@ pub fn survey<T: Number>(
     let empty_stage = instructions(clock, |_, _, _| {}, &rig.controller, &input, &mut data);
     for index in 0..workload::COUNT {
         let (measurement, reference) = workload::input(&rig.controller, index);
+        // References of random places are no motion: joining them is another path.
+        rig.state.follow_at_once();
         let start = clock.ticks();
         let step = cycle(
             black_box(&mut *rig),
@@ -160,6 +162,7 @@ pub fn survey<T: Number>(
             measurement: &measurement,
             reference: &reference,
         };
+        data.follow_at_once();
         for (cost, (_, run)) in survey.stages.iter_mut().zip(Controller::<T>::STAGES) {
             let count = instructions(clock, run, &rig.controller, &input, &mut data);
             cost.add(count.saturating_sub(empty_stage), index);

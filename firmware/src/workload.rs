@@ -149,18 +149,19 @@ pub fn input<T: Real>(controller: &Controller<T>, index: u32) -> (Measurement<T>
     }
     let posture = random.vector::<T, DOF>(2.0);
     let mut reference = Reference::hold(controller.level_count(), posture);
-    let reach = match kind {
-        Kind::Saturated => 1e6,
-        Kind::Tiny => 1e-310,
-        Kind::Zero => 0.0,
-        _ => 1.0,
+    // Within what may be asked for; the fastest of it saturates every torque.
+    let [reach, speed, acceleration] = match kind {
+        Kind::Saturated => [0.5, 10.0, 250.0],
+        Kind::Tiny => [1e-310; 3],
+        Kind::Zero => [0.0; 3],
+        _ => [0.5, 1.0, 10.0],
     };
     for target in reference.targets_mut() {
         // Drawn in this order.
         *target = Target::Position {
             x: Vector3::from(random.vector::<T, 3>(reach)),
-            dx: Vector3::from(random.vector::<T, 3>(reach)),
-            ddx: Vector3::from(random.vector::<T, 3>(10.0 * reach)),
+            dx: Vector3::from(random.vector::<T, 3>(speed)),
+            ddx: Vector3::from(random.vector::<T, 3>(acceleration)),
         };
     }
     (measurement, reference)

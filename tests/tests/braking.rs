@@ -89,7 +89,7 @@ fn an_arm_that_moves_is_braked_until_it_rests() {
         assert!((step.gravity - dynamics.gravity).amax() < 1e-12);
         assert_eq!(
             step.status.fault.map(|fault| fault.quantity),
-            Some(Quantity::Target)
+            Some(Quantity::TargetDistance)
         );
         if modes.last() != Some(&step.status.mode) {
             modes.push(step.status.mode);

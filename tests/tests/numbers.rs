@@ -12,13 +12,14 @@ const FAULTS: RangeInclusive<u32> = 32..=95;
 const LIMITS: RangeInclusive<u32> = 96..=159;
 
 /// Published numbers keep their names for ever: this list only grows.
-const PUBLISHED: [(u32, &str); 6] = [
+const PUBLISHED: [(u32, &str); 7] = [
     (32, "implausible"),
     (33, "non_finite_torque"),
     (34, "wrong_target"),
     (96, "saturated"),
     (97, "rank"),
     (98, "torque_rate"),
+    (99, "joining"),
 ];
 
 /// A row of the registry.
@@ -92,18 +93,19 @@ fn numbers_are_unique_in_order_within_their_range_and_stay_what_they_are() {
 /// What a status reports is in the registry: each set of its own kind.
 #[test]
 fn a_status_names_its_limits_by_the_registry() {
-    let with = |saturated, rank, rate| Status {
+    let with = |saturated, rank, rate, joining| Status {
         saturated: IndexSet(saturated),
         rank: IndexSet(rank),
         rate_limited: IndexSet(rate),
+        joining: IndexSet(joining),
         ..Status::CLEAR
     };
     let numbers = |status: Status| -> Vec<u8> { status.limits().map(LimitKind::number).collect() };
     assert_eq!(numbers(Status::CLEAR), [0; 0]);
-    assert_eq!(numbers(with(1, 0, 0)), [96]);
-    assert_eq!(numbers(with(0, 64, 0)), [97]);
+    assert_eq!(numbers(with(1, 0, 0, 0)), [96]);
+    assert_eq!(numbers(with(0, 64, 0, 0)), [97]);
     assert_eq!(
-        numbers(with(5, 3, 1)),
+        numbers(with(5, 3, 1, 128)),
         LimitKind::ALL.iter().map(|k| *k as u8).collect::<Vec<_>>()
     );
 }

@@ -28,6 +28,7 @@ fn two_cycles<T: Real>(
             dq: state.dq.map(T::from_f64),
             interval_s: T::from_f64(0.002),
         };
+        memory.follow_at_once();
         let step = controller.step(&mut memory, &measurement, &reference);
         (memory.data().demand.0.map(T::to_f64), step)
     });

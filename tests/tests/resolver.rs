@@ -164,6 +164,7 @@ fn speeds_are_those_of_the_printed_recursion_in_exact_order() {
             }
             checked += 1;
             let mut state = ResolverState::new(joints.q);
+            state.follow_at_once();
             let step = resolver.step(&mut state, &measured(joints.q), &wish.reference);
             assert!(step.status.fault.is_none() && !step.status.rank.any());
             let wanted = task_velocities(&config, &wish.reference, &sample.data.rows.error);
@@ -204,7 +205,9 @@ fn a_level_in_conflict_takes_nothing_from_the_one_above() {
     let aside = Target::position(x + Vector3::from([0.0, 0.05, 0.0]));
     let alone = Target::position(x + Vector3::from([0.01, 0.0, 0.0]));
     let reference = Reference::new([alone, aside], q);
-    let step = resolver.step(&mut ResolverState::new(q), &measured(q), &reference);
+    let mut state = ResolverState::new(q);
+    state.follow_at_once();
+    let step = resolver.step(&mut state, &measured(q), &reference);
     let (_, dx) = model.point(
         &JointState { q, dq: step.dq },
         FLANGE.link.number(),
@@ -228,12 +231,12 @@ fn what_cannot_be_true_holds_the_commanded_position() {
         (
             measured(q),
             Reference::new([Target::position([f64::NAN; 3])], q),
-            Quantity::Target,
+            Quantity::TargetDistance,
         ),
         (
             measured(q),
             Reference::new([Target::position([1e300; 3])], q),
-            Quantity::SpeedCommand,
+            Quantity::TargetDistance,
         ),
         (
             measured(q),
@@ -267,7 +270,8 @@ fn what_cannot_be_true_holds_the_commanded_position() {
 fn commands_stay_within_speed_range_and_reach_of_the_arm() {
     let resolver = resolver(two_level().tasks);
     let mut q = JointVector::from([0.0, 0.61, 0.0, -1.40, 0.35, 1.05, 0.0]);
-    let away = Reference::new([Target::position([5.0, 0.0, 0.4])], q);
+    // Beyond the reach of 0.87 m, and not so far that it cannot be meant.
+    let away = Reference::new([Target::position([1.3, 0.0, 0.4])], q);
     let (mut state, mut limited, mut stuck) = (ResolverState::new(q), false, q);
     // An arm that follows to the end of its reach, then one that is held.
     for cycle in 0..4000 {

@@ -3,8 +3,6 @@
 use controller_core::arm::ArmParameters;
 use controller_core::{ControllerConfig, LinkPoint};
 
-use crate::guide::GuideTimes;
-
 /// What the robot adds to the torque that it is sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RobotAdds {
@@ -32,8 +30,6 @@ pub struct SessionConfig {
     pub ramp_s: f64,
     /// Length of the motion, from time 0; of a dry session, from the first datagram.
     pub duration_s: f64,
-    /// Transitions of the reference.
-    pub guide: GuideTimes,
     /// Lost measurements, or commands that the robot does not have, after which
     /// the arm is held.
     pub hold_after: u16,
@@ -65,7 +61,6 @@ impl SessionConfig {
             settle_s: 1.0,
             ramp_s: 0.5,
             duration_s,
-            guide: GuideTimes::default(),
             hold_after: 5,
             resume_after: 50,
             stop_after_s: 2.0,

@@ -1,8 +1,8 @@
 //! A scenario as the bridge runs it: configuration of the session, and its
 //! reference motion.
 
-use bridge::guide::ReferenceSource;
 use bridge::session::SessionConfig;
+use bridge::source::ReferenceSource;
 use controller_core::Reference;
 use controller_core::arm::LWR_IV_FLANGE;
 use controller_core::law::null_space::NullDamping;

@@ -36,7 +36,7 @@ pub struct Input {
     pub interval_s: f64,
     /// Reference of a level: where it is, plus this \[m\], and speeds of this size.
     pub offset: f64,
-    /// Absolute reference at the base: far away where `offset` is large.
+    /// q_d \[rad\].
     pub posture: [f64; 7],
 }
 
@@ -151,8 +151,9 @@ pub fn states() -> Vec<Input> {
             for (interval_s, offset, far) in [
                 (0.002, 0.0, 0.0),
                 (0.0011, 1e-310, -0.0),
-                (0.039, 3.0, 10.0),
-                (0.002, -1e4, -1e4),
+                // As far as a reference may be from an outstretched arm.
+                (0.039, 0.28, 4.0),
+                (0.002, -0.28, -4.0),
             ] {
                 states.push(Input {
                     q,

@@ -4,6 +4,8 @@ use core::fmt;
 
 use crate::joint::DOF;
 
+use super::link::LinkPoint;
+
 /// Tables of one link and of the joint that moves it. Plain `f64` data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkParameters {
@@ -46,6 +48,26 @@ pub struct ArmParameters {
     pub gravity: [f64; 3],
     /// The links, base to flange.
     pub links: [LinkParameters; DOF],
+}
+
+impl ArmParameters {
+    /// The shoulder \[m\], base-plate frame: the foot of link 1's frame on the axis of joint 1,
+    /// which no joint moves.
+    #[must_use]
+    pub fn shoulder(&self) -> [f64; 3] {
+        [0.0, 0.0, self.base_height + self.links[0].d]
+    }
+
+    /// Farthest that `point` can be from the shoulder \[m\]: all lengths between, in one line.
+    #[must_use]
+    pub fn reach(&self, point: &LinkPoint) -> f64 {
+        let mut reach = self.links[0].a.abs();
+        for link in self.links.iter().take(point.link.number()).skip(1) {
+            reach += libm::hypot(link.a, link.d);
+        }
+        let [x, y, z] = point.offset;
+        reach + libm::hypot(libm::hypot(x, y), z)
+    }
 }
 
 /// Why parameter tables do not make a model.

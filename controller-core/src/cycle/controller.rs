@@ -2,8 +2,10 @@
 
 use super::brake::brake_rate;
 use super::config::ControllerConfig;
+use super::measurement::believe_posture;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
+use crate::fault::Fault;
 use crate::joint::JointVector;
 use crate::law::null_space::Compliance;
 use crate::law::sampling::DampingRate;
@@ -55,7 +57,7 @@ impl<T: Real> Controller<T> {
         let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
-            levels: Levels::new(&config.tasks),
+            levels: Levels::new(&config.tasks, arm.parameters()),
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
             cycle_s,
@@ -77,6 +79,15 @@ impl<T: Real> Controller<T> {
     #[must_use]
     pub fn level_count(&self) -> usize {
         self.levels.as_slice().len()
+    }
+
+    /// Whether a cycle would believe that the arm is at `q` \[rad\]: within the range of every
+    /// joint and [`POSITION_MARGIN`](crate::ranges::POSITION_MARGIN).
+    ///
+    /// # Errors
+    /// The fault that it would end in.
+    pub fn believe_posture(&self, q: &JointVector<T>) -> Result<(), Fault> {
+        believe_posture(&self.arm, q)
     }
 
     /// Compliance of what the tasks leave.

@@ -16,7 +16,7 @@ use crate::law::motion::MotionSplit;
 use crate::law::null_space::PostureIntegral;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
-use crate::task::{HeldPlaces, Reference};
+use crate::task::{Followed, Reference};
 
 /// What comes into a cycle from outside.
 #[derive(Clone, Copy, Debug)]
@@ -28,14 +28,14 @@ pub struct Input<'a, T: Real> {
 }
 
 /// The results of a cycle, one field per stage of
-/// [`Controller::STAGES`](super::Controller::STAGES) and in its order. A stage reads the
-/// fields above its own and writes its own.
+/// [`Controller::STAGES`](super::Controller::STAGES). A stage reads the fields of those before
+/// it and writes its own. In the order of the stages but for the two largest, which stand last.
+// In this order in memory: most of what a stage reads lies within reach of one base register.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Data<T: Real> {
     /// q, dq as measured.
     pub joints: JointState<T>,
-    /// Frames, axes and their rates.
-    pub kinematics: Kinematics<T>,
     /// Equation of motion (6).
     pub dynamics: Dynamics<T>,
     /// Torque \[Nm\] that holds the arm if this cycle or a later one ends in a fault: g(q)
@@ -61,8 +61,10 @@ pub struct Data<T: Real> {
     pub(super) delay: Delay<T>,
     /// q_d of an integrated posture.
     pub(super) posture_integral: PostureIntegral<T>,
-    /// Where levels hold.
-    pub(super) held_places: HeldPlaces<T>,
+    /// Frames, axes and their rates.
+    pub kinematics: Kinematics<T>,
+    /// What levels and posture follow: the reference without its jumps.
+    pub followed: Followed<T>,
 }
 
 impl<T: Real> Data<T> {
@@ -87,8 +89,13 @@ impl<T: Real> Data<T> {
             allocation: Allocation::new(),
             delay: Delay::new(),
             posture_integral: PostureIntegral::new(),
-            held_places: HeldPlaces::new(),
+            followed: Followed::new(),
         }
+    }
+
+    /// The next reference is followed as it is, whatever jump it is.
+    pub fn follow_at_once(&mut self) {
+        self.followed.follow_at_once();
     }
 
     /// r \[Nm\], tends to -tau_ext.
@@ -98,12 +105,13 @@ impl<T: Real> Data<T> {
         &self.observer.residual
     }
 
-    /// Forgets what is remembered: observer, delay, integrated posture, held places.
+    /// Forgets what is remembered: observer, delay, integrated posture,
+    /// what was followed.
     pub(super) fn forget(&mut self) {
         self.observer = Observer::new();
         self.delay = Delay::new();
         self.posture_integral = PostureIntegral::new();
-        self.held_places = HeldPlaces::new();
+        self.followed = Followed::new();
     }
 }
 
@@ -176,7 +184,20 @@ impl<T: Real> State<T> {
         self.data.observer.started = false;
     }
 
-    /// Clears a latched fault. Observer, integrated posture and held places start
+    /// The next reference is followed as it is: a jump is not joined
+    /// ([`JUMP`](crate::ranges::JUMP)). For callers whose references start where the arm is,
+    /// or who join them themselves.
+    pub fn follow_at_once(&mut self) {
+        self.data.follow_at_once();
+    }
+
+    /// What the levels followed is forgotten: the next targets are joined from how the arm
+    /// moves. The posture goes on.
+    pub fn join_from_the_arm(&mut self) {
+        self.data.followed.forget_levels();
+    }
+
+    /// Clears a latched fault. Observer, integrated posture and what was followed start
     /// anew; the torque that holds the arm stays until the next cycle.
     pub fn reset(&mut self) {
         self.data.forget();

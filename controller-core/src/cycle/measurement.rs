@@ -42,15 +42,23 @@ pub(crate) fn believe<T: Real>(
     if believed {
         return Ok(());
     }
-    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(positions)) {
-        let limit = limit + margin;
-        within(Quantity::Position, index, value, -limit, limit)?;
-    }
+    believe_posture(arm, q)?;
     for (index, (&value, &limit)) in (1..).zip(dq.iter().zip(speeds)) {
         let limit = limit * factor;
         within(Quantity::Speed, index, value, -limit, limit)?;
     }
     within(Quantity::Interval, 0, *interval_s, low, high)
+}
+
+/// The part of [`believe`] that is about q.
+#[cold]
+#[inline(never)]
+pub(crate) fn believe_posture<T: Real>(arm: &ArmModel<T>, q: &JointVector<T>) -> Result<(), Fault> {
+    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(arm.position_limit())) {
+        let limit = limit + T::from_f64(POSITION_MARGIN);
+        within(Quantity::Position, index, value, -limit, limit)?;
+    }
+    Ok(())
 }
 
 #[inline(always)]

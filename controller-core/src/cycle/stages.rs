@@ -25,6 +25,8 @@ pub enum StageName {
     HoldingTorque,
     /// The residual in [`Data::observer`].
     Observer,
+    /// [`Data::followed`].
+    Followed,
     /// [`Data::rows`].
     TaskRows,
     /// [`Data::hierarchy`].
@@ -53,6 +55,7 @@ impl StageName {
             Self::Dynamics => "dynamics",
             Self::HoldingTorque => "holding torque",
             Self::Observer => "observer",
+            Self::Followed => "followed",
             Self::TaskRows => "task rows",
             Self::Hierarchy => "hierarchy",
             Self::MotionSplit => "motion split",
@@ -69,7 +72,7 @@ impl StageName {
 pub type Run<T> = fn(&Controller<T>, &Input<'_, T>, &mut Data<T>);
 
 /// Number of stages.
-pub const STAGE_COUNT: usize = 13;
+pub const STAGE_COUNT: usize = 14;
 
 impl<T: Real> Controller<T> {
     /// The cycle.
@@ -79,6 +82,7 @@ impl<T: Real> Controller<T> {
         (StageName::Dynamics, dynamics),
         (StageName::HoldingTorque, holding_torque),
         (StageName::Observer, observer),
+        (StageName::Followed, followed),
         (StageName::TaskRows, task_rows),
         (StageName::Hierarchy, hierarchy),
         (StageName::MotionSplit, motion_split),
@@ -145,11 +149,21 @@ fn observer<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
 }
 
 #[inline(never)]
-fn task_rows<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
+fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
+    data.followed.update(
+        &controller.levels,
+        input.reference,
+        &data.kinematics,
+        &data.joints.q,
+        input.measurement.interval_s,
+    );
+}
+
+#[inline(never)]
+fn task_rows<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.rows.update(
         &controller.levels,
-        input.reference.targets(),
-        &mut data.held_places,
+        &data.followed,
         &data.kinematics,
         &data.joints,
     );
@@ -167,22 +181,25 @@ fn motion_split<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>
 }
 
 fn posture<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
-    let start = &input.reference.posture;
-    let rate = match controller.compliance.posture {
-        Posture::Constant => {
-            data.posture = *start;
-            return;
-        }
-        Posture::IntegralCoupled => data.motion.task_velocity,
-        Posture::IntegralUncoupled => MotionSplit::uncoupled_task_velocity(
+    let start = data.followed.posture();
+    let integrated = match controller.compliance.posture {
+        Posture::Constant => None,
+        Posture::IntegralCoupled => Some(data.motion.task_velocity),
+        Posture::IntegralUncoupled => Some(MotionSplit::uncoupled_task_velocity(
             &data.dynamics,
             &data.rows,
             &data.hierarchy,
             &data.joints,
-        ),
+        )),
     };
     let interval_s = input.measurement.interval_s;
-    data.posture = data.posture_integral.advance(start, &rate, interval_s);
+    data.posture = match &integrated {
+        None => *start,
+        Some(rate) => data.posture_integral.advance(start, rate, interval_s),
+    };
+    if let Some(offset) = data.followed.posture_offset() {
+        data.posture += offset;
+    }
 }
 
 #[inline(never)]

@@ -5,8 +5,8 @@ use super::controller::Controller;
 use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
 use super::stages::{StageName, kinematics_at, torque_demand};
-use super::usable::usable;
-use crate::fault::{Fault, IndexSet, Mode, Status};
+use super::usable::admit;
+use crate::fault::{Fault, Limits, Mode, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
@@ -53,6 +53,14 @@ impl<T: Real> Controller<T> {
         reference
     }
 
+    /// What levels and posture followed in the last cycle of `state`: its reference, joined
+    /// where it jumped. A level that followed nothing yet has
+    /// [`Target::Hold`](crate::Target::Hold).
+    #[must_use]
+    pub fn followed_reference(&self, state: &State<T>) -> Reference<T> {
+        state.data.followed.reference(self.level_count())
+    }
+
     /// One cycle. Never fails and never panics: with a measurement or reference
     /// that cannot be true it latches a fault and brakes the arm, see
     /// [`Mode`](crate::fault::Mode).
@@ -77,19 +85,15 @@ impl<T: Real> Controller<T> {
         reference: &Reference<T>,
         law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
     ) -> Step<T> {
-        let admitted = match state.fault {
-            Some(fault) => Err(fault),
-            None => believe(&self.arm, self.cycle_s, measurement)
-                .and_then(|()| usable(reference, &self.levels)),
-        };
         let input = Input {
             measurement,
             reference,
         };
+        let admitted = admit(state.fault, &self.arm, &self.levels, self.cycle_s, &input);
         if let Err(fault) = admitted {
             return self.brake(state, &input, fault);
         }
-        self.evaluate_with(&input, &mut state.data, law);
+        self.run(&input, &mut state.data, law);
         state.seen = true;
         match state.data.allocation.fault(&state.data.demand) {
             None => state.answer(),
@@ -97,7 +101,7 @@ impl<T: Real> Controller<T> {
         }
     }
 
-    /// All stages on an input that is taken as it is: no check, no fault. For
+    /// All stages on an input that is taken as it is: no check, no fault, no joining. For
     /// inspection and tests.
     pub fn evaluate(&self, input: &Input<'_, T>, data: &mut Data<T>) {
         self.evaluate_until(StageName::ObserverInput, input, data);
@@ -105,6 +109,13 @@ impl<T: Real> Controller<T> {
 
     /// The same up to and including the stage `last`.
     pub fn evaluate_until(&self, last: StageName, input: &Input<'_, T>, data: &mut Data<T>) {
+        if last >= StageName::Followed {
+            data.follow_at_once();
+        }
+        self.run_until(last, input, data);
+    }
+
+    fn run_until(&self, last: StageName, input: &Input<'_, T>, data: &mut Data<T>) {
         for (name, run) in Self::STAGES {
             if name <= last {
                 run(self, input, data);
@@ -115,6 +126,18 @@ impl<T: Real> Controller<T> {
     /// The same with another law.
     #[inline]
     pub fn evaluate_with(
+        &self,
+        input: &Input<'_, T>,
+        data: &mut Data<T>,
+        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
+    ) {
+        data.follow_at_once();
+        self.run(input, data, law);
+    }
+
+    /// All stages, with `law` in the place of the torque demand.
+    #[inline(always)]
+    fn run(
         &self,
         input: &Input<'_, T>,
         data: &mut Data<T>,
@@ -149,7 +172,7 @@ impl<T: Real> Controller<T> {
         state.fault = Some(fault);
         let followed = state.brake.mode != Mode::Stopped && self.follows(state, input.measurement);
         let demand = if followed {
-            self.evaluate_until(StageName::HoldingTorque, input, &mut state.data);
+            self.run_until(StageName::HoldingTorque, input, &mut state.data);
             state.seen = true;
             state.brake.blind_s = T::ZERO;
             state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
@@ -185,7 +208,7 @@ impl<T: Real> Controller<T> {
                 fault: Some(fault),
                 saturated: allocation.saturated,
                 rate_limited: allocation.rate_limited,
-                rank: IndexSet::NONE,
+                ..Status::CLEAR
             },
         }
     }
@@ -228,11 +251,12 @@ impl<T: Real> State<T> {
             residual: *data.residual(),
             gravity: data.dynamics.gravity,
             coriolis: data.dynamics.coriolis,
-            status: Status::running(
-                allocation.saturated,
-                data.hierarchy.deficient(),
-                allocation.rate_limited,
-            ),
+            status: Status::running(Limits {
+                saturated: allocation.saturated,
+                rank: data.hierarchy.deficient(),
+                rate_limited: allocation.rate_limited,
+                joining: data.followed.joining(),
+            }),
         }
     }
 }

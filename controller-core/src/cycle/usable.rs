@@ -1,33 +1,73 @@
-//! Whether a reference can be meant.
+//! What a cycle may begin with: a measurement that can be true, a reference that can be
+//! meant.
 
-use super::measurement::within;
+use super::data::Input;
+use super::measurement::{believe, within};
+use crate::arm::ArmModel;
 use crate::fault::{Fault, FaultKind, ORIENTATION_CODE, POSITION_CODE, Quantity};
-use crate::joint::{JointVector, Vector3, all_finite};
-use crate::ranges::QUATERNION_NORMS;
+use crate::joint::{DOF, JointVector, Vector3};
+use crate::ranges::{POSTURE_FACTOR, QUATERNION_NORMS, TARGET_ACCELERATION_MAX, TARGET_SPEED_MAX};
 use crate::real::Real;
 use crate::task::{LevelPoint, Levels, Reference, Target};
 
-/// Checks that a reference has one target per level, of the kind of its task, and only
-/// finite numbers.
+/// Whether a cycle may run: no fault is `latched`, the measurement is believed and the
+/// reference usable.
+///
+/// # Errors
+/// The latched fault, or the first quantity that cannot be.
+#[inline(always)]
+pub(crate) fn admit<T: Real>(
+    latched: Option<Fault>,
+    arm: &ArmModel<T>,
+    levels: &Levels<T>,
+    cycle_s: T,
+    input: &Input<'_, T>,
+) -> Result<(), Fault> {
+    match latched {
+        Some(fault) => Err(fault),
+        None => believe(arm, cycle_s, input.measurement)
+            .and_then(|()| usable(input.reference, levels, arm)),
+    }
+}
+
+/// Checks that a reference has one target per level, of the kind of its task, and that
+/// an arm can be meant by its numbers: [`crate::ranges`] has their bounds.
 ///
 /// # Errors
 /// The first target or posture that is not so.
-pub(crate) fn usable<T: Real>(reference: &Reference<T>, levels: &Levels<T>) -> Result<(), Fault> {
-    let (targets, levels) = (reference.targets(), levels.as_slice());
-    if targets.len() != levels.len() {
-        let (value, allowed) = (targets.len() as f64, levels.len() as f64);
-        return Err(refusal(Quantity::TargetCount, 0, value, [allowed; 2]));
+fn usable<T: Real>(
+    reference: &Reference<T>,
+    levels: &Levels<T>,
+    arm: &ArmModel<T>,
+) -> Result<(), Fault> {
+    let targets = reference.targets();
+    let count = levels.as_slice().len();
+    if targets.len() != count {
+        return Err(refusal(
+            Quantity::TargetCount,
+            0,
+            targets.len() as f64,
+            [count as f64; 2],
+        ));
     }
-    for (index, (target, level)) in (1..).zip(targets.iter().zip(levels)) {
+    for (index, (target, level)) in (1..).zip(targets.iter().zip(levels.as_slice())) {
         match (target, &level.tracked) {
             (Target::Hold, _) => {}
             (Target::Position { x, dx, ddx }, LevelPoint::Position(..)) => {
-                finite(Quantity::Target, index, [x, dx, ddx])?;
+                let ([speed, _], [acceleration, _]) = (TARGET_SPEED_MAX, TARGET_ACCELERATION_MAX);
+                let (from, reach) = (levels.shoulder(), level.reach);
+                bounded(Quantity::TargetDistance, index, &(x - from), reach)?;
+                bounded(Quantity::TargetSpeed, index, dx, T::from_f64(speed))?;
+                let most = T::from_f64(acceleration);
+                bounded(Quantity::TargetAcceleration, index, ddx, most)?;
             }
             (Target::Orientation { q, w, dw }, LevelPoint::Orientation(_)) => {
+                let ([_, speed], [_, acceleration]) = (TARGET_SPEED_MAX, TARGET_ACCELERATION_MAX);
                 let [low, high] = QUATERNION_NORMS.map(|norm| T::from_f64(norm * norm));
                 within(Quantity::Orientation, index, q.dot(q), low, high)?;
-                finite(Quantity::Target, index, [w, dw])?;
+                bounded(Quantity::TargetAngularSpeed, index, w, T::from_f64(speed))?;
+                let most = T::from_f64(acceleration);
+                bounded(Quantity::TargetAngularAcceleration, index, dw, most)?;
             }
             (Target::Position { .. }, LevelPoint::Orientation(_)) => {
                 return Err(wrong_kind(index, POSITION_CODE, ORIENTATION_CODE));
@@ -37,43 +77,53 @@ pub(crate) fn usable<T: Real>(reference: &Reference<T>, levels: &Levels<T>) -> R
             }
         }
     }
-    if all_finite(&reference.posture) {
+    let (factor, limits) = (T::from_f64(POSTURE_FACTOR), arm.position_limit());
+    let mut usable = true;
+    for i in 0..DOF {
+        usable &= reference.posture[i].magnitude() <= factor * limits[i];
+    }
+    if usable {
         return Ok(());
     }
-    Err(not_finite(&reference.posture))
+    first_beyond(&reference.posture, &(limits * factor))
 }
 
+/// Whether `vector` is at most `most` long.
 #[inline(always)]
-fn finite<T: Real, const N: usize>(
+fn bounded<T: Real>(
     quantity: Quantity,
     index: u8,
-    vectors: [&Vector3<T>; N],
+    vector: &Vector3<T>,
+    most: T,
 ) -> Result<(), Fault> {
-    let mut all = true;
-    for vector in vectors {
-        all &= all_finite(vector);
-    }
-    if all {
+    // False for NaN as well.
+    if vector.dot(vector) <= most * most {
         return Ok(());
     }
-    let mut values = vectors.into_iter().flatten();
-    let value = values.find(|value| !value.finite());
-    let value = value.map_or(f64::NAN, |value| value.to_f64());
-    Err(refusal(quantity, index, value, [f64::MIN, f64::MAX]))
+    Err(too_long(quantity, index, vector, most))
 }
 
 #[cold]
-fn not_finite<T: Real>(posture: &JointVector<T>) -> Fault {
-    let mut joints = (1..).zip(posture);
-    let (index, value) = joints
-        .find(|(_, value)| !value.finite())
-        .map_or((0, f64::NAN), |(index, value)| (index, value.to_f64()));
-    refusal(
-        Quantity::PostureReference,
-        index,
-        value,
-        [f64::MIN, f64::MAX],
-    )
+#[inline(never)]
+fn too_long<T: Real>(quantity: Quantity, index: u8, vector: &Vector3<T>, most: T) -> Fault {
+    let vector = vector.map(T::to_f64);
+    let largest = vector.fold(0.0, |largest: f64, x| largest.larger(x.magnitude()));
+    let scaled = vector / largest;
+    let length = if largest.finite() {
+        largest * scaled.dot(&scaled).square_root()
+    } else {
+        largest
+    };
+    refusal(quantity, index, length, [0.0, most.to_f64()])
+}
+
+#[cold]
+#[inline(never)]
+fn first_beyond<T: Real>(posture: &JointVector<T>, limits: &JointVector<T>) -> Result<(), Fault> {
+    for (joint, (&value, &limit)) in (1..).zip(posture.iter().zip(limits)) {
+        within(Quantity::PostureReference, joint, value, -limit, limit)?;
+    }
+    Ok(())
 }
 
 #[cold]

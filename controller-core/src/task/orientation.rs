@@ -25,6 +25,25 @@ pub fn about_axis<T: Real>(axis: &Vector3<T>, angle: T) -> Quaternion<T> {
     Quaternion::from([cos, axis.x * sin, axis.y * sin, axis.z * sin])
 }
 
+/// `orientation` turned by a rotation vector \[rad\], at most a full turn of it.
+#[must_use]
+pub fn turned<T: Real>(orientation: &Quaternion<T>, by: &Vector3<T>) -> Quaternion<T> {
+    let angle = by.dot(by).square_root();
+    if angle < T::from_f64(1e-12) {
+        return *orientation;
+    }
+    let axis = by * (T::ONE / angle);
+    let angle = angle.limited(T::ZERO, T::from_f64(core::f64::consts::TAU));
+    product(&about_axis(&axis, angle), orientation)
+}
+
+/// With norm 1, of one that is not zero.
+#[must_use]
+#[inline]
+pub fn unit<T: Real>(q: &Quaternion<T>) -> Quaternion<T> {
+    q * (T::ONE / q.dot(q).square_root())
+}
+
 /// First `second`, then `first`: the product first * second.
 #[must_use]
 pub fn product<T: Real>(first: &Quaternion<T>, second: &Quaternion<T>) -> Quaternion<T> {

@@ -1,9 +1,8 @@
 //! The stacked rows J, dJ/dt that all levels make together, and what they command.
 
+use super::followed::{Followed, Motion};
 use super::set::{Level, LevelPoint, Levels};
-use super::target::{Held, HeldPlaces, Target};
 use super::{Axes, orientation};
-use crate::arm::Link;
 use crate::arm::kinematics::{JacobianRows, Kinematics};
 use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
 use crate::ranges::MAX_ROWS;
@@ -44,44 +43,31 @@ impl<T: Real> TaskRows<T> {
         }
     }
 
-    /// Rows of all `levels` with their `targets`, level by level. A level without a
-    /// target holds; a target of another kind counts as none.
+    /// Rows of all `levels`, level by level.
     #[inline]
     pub(crate) fn update(
         &mut self,
         levels: &Levels<T>,
-        targets: &[Target<T>],
-        held: &mut HeldPlaces<T>,
+        followed: &Followed<T>,
         kinematics: &Kinematics<T>,
         joints: &JointState<T>,
     ) {
         self.count = 0;
-        let mut targets = targets.iter();
-        for (index, level) in levels.as_slice().iter().enumerate() {
-            let target = targets.next().unwrap_or(&Target::Hold);
+        for (level, followed) in levels.as_slice().iter().zip(followed.levels()) {
+            let desired = &followed.now;
             match &level.tracked {
                 LevelPoint::Position(link, offset) => {
                     let motion = kinematics.point(*link, offset);
-                    let parts = match target {
-                        Target::Position { x, dx, ddx } => {
-                            held.release(index);
-                            (x - motion.x, dx - motion.dx, *ddx)
-                        }
-                        _ => {
-                            let [x, y, z] = motion.x.into();
-                            let place =
-                                held.hold(index, Held::Position, || [x, y, z, T::ZERO].into());
-                            let [x, y, z, _] = place.into();
-                            (Vector3::from([x, y, z]) - motion.x, -motion.dx, zeros())
-                        }
-                    };
-                    let commanded = Commanded::new(level, parts);
+                    let error = desired.position() - motion.x;
+                    let commanded = Commanded::new(level, desired, error, motion.dx);
                     let rows = kinematics.point_jacobian(*link, &motion);
                     self.push(level.axes, &commanded, joints, &rows);
                 }
                 LevelPoint::Orientation(link) => {
-                    let commanded =
-                        orientation_commanded(level, index, *link, target, held, kinematics);
+                    let motion = kinematics.link(*link);
+                    let actual = orientation::of_rotation(&motion.rotation);
+                    let error = orientation::chord(&desired.place, &actual);
+                    let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
                     let rows = kinematics.angular_jacobian(*link);
                     self.push(level.axes, &commanded, joints, &rows);
                 }
@@ -168,40 +154,14 @@ struct Commanded<T: Real> {
 }
 
 impl<T: Real> Commanded<T> {
-    /// (12) from error, its rate and the desired acceleration.
+    /// (12) from the desired motion, the error and the actual velocity.
     #[inline(always)]
-    fn new(level: &Level<T>, (error, rate, desired): (Vector3<T>, Vector3<T>, Vector3<T>)) -> Self {
-        let rate = level.axes.select(&rate);
+    fn new(level: &Level<T>, desired: &Motion<T>, error: Vector3<T>, velocity: Vector3<T>) -> Self {
+        let rate = level.axes.select(&(desired.velocity - velocity));
         let error = level.axes.select(&error);
         Self {
             error,
-            acceleration: desired + level.damping * rate + level.stiffness * error,
+            acceleration: desired.acceleration + level.damping * rate + level.stiffness * error,
         }
     }
-}
-
-#[inline(always)]
-fn orientation_commanded<T: Real>(
-    level: &Level<T>,
-    index: usize,
-    link: Link,
-    target: &Target<T>,
-    held: &mut HeldPlaces<T>,
-    kinematics: &Kinematics<T>,
-) -> Commanded<T> {
-    let motion = kinematics.link(link);
-    let actual = orientation::of_rotation(&motion.rotation);
-    let (desired, w, dw) = match target {
-        Target::Orientation { q, w, dw } => {
-            held.release(index);
-            (*q, *w, *dw)
-        }
-        _ => (
-            held.hold(index, Held::Orientation, || actual),
-            zeros(),
-            zeros(),
-        ),
-    };
-    let error = orientation::chord(&desired, &actual);
-    Commanded::new(level, (error, w - motion.angular_velocity, dw))
 }

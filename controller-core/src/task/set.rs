@@ -2,11 +2,11 @@
 
 use super::{Axes, Target, orientation};
 use crate::arm::kinematics::{Kinematics, PointMotion};
-use crate::arm::{Link, LinkPoint};
+use crate::arm::{ArmParameters, Link, LinkPoint};
 use crate::error::{ConfigError, Gain};
 use crate::gain::{self, diagonal};
 use crate::joint::{Matrix3, Vector3, zeros};
-use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M};
+use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M, REACH_MARGIN_M};
 use crate::real::Real;
 
 /// What a task tracks.
@@ -185,6 +185,8 @@ impl<T: Real> LevelPoint<T> {
 pub(crate) struct Level<T: Real> {
     pub tracked: LevelPoint<T>,
     pub axes: Axes,
+    /// How far from the shoulder a target may be \[m\]; of an orientation 0.
+    pub reach: T,
     /// K_p \[1/s2\].
     pub stiffness: Matrix3<T>,
     /// K_d \[1/s\].
@@ -196,23 +198,28 @@ pub(crate) struct Level<T: Real> {
 pub(crate) struct Levels<T: Real> {
     levels: [Level<T>; MAX_LEVELS],
     count: usize,
+    shoulder: Vector3<T>,
 }
 
 impl<T: Real> Levels<T> {
-    pub fn new(set: &TaskSet) -> Self {
+    pub fn new(set: &TaskSet, arm: &ArmParameters) -> Self {
         let mut levels = Self {
             levels: [Level {
                 tracked: LevelPoint::Orientation(Link::L7),
                 axes: Axes::XYZ,
+                reach: T::ZERO,
                 stiffness: zeros(),
                 damping: zeros(),
             }; MAX_LEVELS],
             count: set.count,
+            shoulder: Vector3::from(arm.shoulder().map(T::from_f64)),
         };
         for (level, task) in levels.levels.iter_mut().zip(set.tasks()) {
             level.axes = task.axes;
             level.tracked = match task.tracked {
                 Tracked::Position(LinkPoint { link, offset }) => {
+                    let reach = arm.reach(&LinkPoint { link, offset });
+                    level.reach = T::from_f64(reach + REACH_MARGIN_M);
                     LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
                 }
                 Tracked::Orientation(link) => LevelPoint::Orientation(link),
@@ -247,6 +254,12 @@ impl<T: Real> Levels<T> {
             (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
         }
         self
+    }
+
+    /// Where the distance of targets counts from \[m\], base-plate frame.
+    #[inline(always)]
+    pub fn shoulder(&self) -> &Vector3<T> {
+        &self.shoulder
     }
 
     #[inline(always)]

@@ -6,11 +6,12 @@ use crate::ranges::MAX_LEVELS;
 use crate::real::Real;
 
 /// Desired motion of one level, base-plate frame. Axes that the task does not
-/// control have no influence, but must be finite. The variant must fit the task:
+/// control have no influence, but the bounds of [`crate::ranges`] hold for all three. The variant must fit the task:
 /// another one is a fault ([`crate::fault::FaultKind::WrongTarget`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target<T: Real> {
-    /// For any task: rest where the level is in the first cycle of holding.
+    /// For any task: come to rest from what was followed, or without a target before from
+    /// how the arm moves, within [`HOLD_S`](crate::ranges::HOLD_S), and stay there.
     Hold,
     /// For a position task.
     Position {
@@ -131,61 +132,5 @@ impl<T: Real> Reference<T> {
     #[must_use]
     pub fn targets_mut(&mut self) -> &mut [Target<T>] {
         self.targets.get_mut(..self.count).unwrap_or(&mut [])
-    }
-}
-
-/// What a held place is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Held {
-    /// Nothing: the level follows a target.
-    Nothing,
-    /// A position \[m\], in the first three entries.
-    Position,
-    /// A quaternion.
-    Orientation,
-}
-
-/// Where levels hold that have [`Target::Hold`]: the places of its first cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct HeldPlaces<T: Real> {
-    places: [Quaternion<T>; MAX_LEVELS],
-    held: [Held; MAX_LEVELS],
-}
-
-impl<T: Real> HeldPlaces<T> {
-    pub const fn new() -> Self {
-        Self {
-            places: [zeros(); MAX_LEVELS],
-            held: [Held::Nothing; MAX_LEVELS],
-        }
-    }
-
-    /// The place of a level that holds a `kind`; `now` is where it is. A place of
-    /// another kind, left by another controller, is none.
-    #[inline(always)]
-    pub fn hold(
-        &mut self,
-        level: usize,
-        kind: Held,
-        now: impl FnOnce() -> Quaternion<T>,
-    ) -> Quaternion<T> {
-        match (self.places.get_mut(level), self.held.get_mut(level)) {
-            (Some(place), Some(held)) => {
-                if *held != kind {
-                    *place = now();
-                    *held = kind;
-                }
-                *place
-            }
-            _ => now(),
-        }
-    }
-
-    /// The level has a target of its own.
-    #[inline(always)]
-    pub fn release(&mut self, level: usize) {
-        if let Some(held) = self.held.get_mut(level) {
-            *held = Held::Nothing;
-        }
     }
 }

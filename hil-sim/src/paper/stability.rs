@@ -125,6 +125,8 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
         reference.posture += direction * POSTURE_OFFSET_RAD;
     }
 
+    // The offset is what the functions are about.
+    state.follow_at_once();
     let mut values: Vec<Vec<f64>> = Vec::new();
     let mut times = Vec::new();
     for cycle in 0..(DURATION_S / cycle_s) as usize {

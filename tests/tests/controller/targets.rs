@@ -130,6 +130,7 @@ fn a_target_of_the_wrong_kind_holds_the_arm_until_the_reset() {
     };
     let mut moving = right.clone();
     moving.targets_mut()[0] = Target::position(x + Vector3::from([0.02, 0.0, 0.0]));
+    closed.state.follow_at_once();
     for _ in 0..500 {
         let seen = closed.step_towards(&moving, no_contact);
         assert!(seen.step.status.is_clear(), "{:?}", seen.step.status);
@@ -228,21 +229,25 @@ fn every_number_of_a_target_must_be_finite() {
                 let q = some_rotation();
                 (1, Target::Orientation { q, w, dw })
             };
-            for (level, target) in [
-                position(wrong, zero, zero),
-                position(zero, wrong, zero),
-                position(zero, zero, wrong),
-                orientation(wrong, zero),
-                orientation(zero, wrong),
+            for ((level, target), quantity) in [
+                (position(wrong, zero, zero), Quantity::TargetDistance),
+                (position(zero, wrong, zero), Quantity::TargetSpeed),
+                (position(zero, zero, wrong), Quantity::TargetAcceleration),
+                (orientation(wrong, zero), Quantity::TargetAngularSpeed),
+                (
+                    orientation(zero, wrong),
+                    Quantity::TargetAngularAcceleration,
+                ),
             ] {
                 let fault = fault(&controller, |reference| {
                     reference.targets_mut()[level] = target;
                 });
-                let number = level + 1;
+                let fault = fault.expect("not finite");
                 assert_eq!(
-                    fault.expect("not finite").to_string(),
-                    format!("implausible: target of level {number} is {value}; it must be finite")
+                    (fault.quantity, usize::from(fault.index)),
+                    (quantity, level + 1)
                 );
+                assert!(!fault.value.is_finite() && fault.max.is_finite(), "{fault}");
             }
         }
     }
@@ -263,7 +268,7 @@ fn what_is_wrong_first_is_named() {
     };
     assert_eq!(first(&measurement, &reference), Quantity::TargetKind);
     reference.targets_mut()[0] = Target::position([f64::NAN; 3]);
-    assert_eq!(first(&measurement, &reference), Quantity::Target);
+    assert_eq!(first(&measurement, &reference), Quantity::TargetDistance);
     let few = Reference::from_targets(&reference.targets()[..1], reference.posture);
     let few = few.expect("one target");
     assert_eq!(first(&measurement, &few), Quantity::TargetCount);
