@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Builds libstratum.a and puts it under a prefix with its header, and with what
-# pkg-config and CMake want of it. The prefix may be moved afterwards.
+# Builds libstratum.a, which exports stratum_... and nothing else, and puts it under a prefix
+# with its header, and with what pkg-config and CMake want of it. The prefix may be moved
+# afterwards.
 #   controller-capi/install.sh PREFIX [--target TRIPLE] [--single]
 set -euo pipefail
 
 usage() { echo "usage: controller-capi/install.sh PREFIX [--target TRIPLE] [--single]" >&2; exit 2; }
-prefix= target= options=() precision=f64
+prefix= target= features=panic-handler options=() precision=f64
 while [ $# -gt 0 ]; do
   case $1 in
-    --single) precision=f32; options+=(--features single) ;;
+    --single) precision=f32; features+=,single ;;
     --target) [ $# -gt 1 ] || usage; target=$2; options+=(--target "$2"); shift ;;
     -*) usage ;;
     *) [ -z "$prefix" ] || usage; prefix=$1 ;;
@@ -20,7 +21,8 @@ mkdir -p "$prefix"
 prefix=$(cd "$prefix" && pwd)
 
 cd "$(dirname "$0")/.."
-cargo build -p controller-capi --lib --release --quiet "${options[@]}"
+cargo rustc -p controller-capi --lib --crate-type staticlib --release --quiet \
+  --features "$features" "${options[@]}"
 version=$(cargo pkgid -p controller-capi)
 version=${version##*[#@]}
 cfg=$(rustc --print cfg ${target:+--target "$target"})
@@ -42,5 +44,6 @@ place stratum-config.cmake "$prefix/lib/cmake/stratum"
 place stratum-config-version.cmake "$prefix/lib/cmake/stratum"
 mkdir -p "$prefix/include"
 cp controller-capi/include/stratum.h "$prefix/include/"
-cp "${CARGO_TARGET_DIR:-target}/${target:+$target/}release/libstratum.a" "$prefix/lib/"
+controller-capi/isolate.sh "${CARGO_TARGET_DIR:-target}/${target:+$target/}release/libstratum.a" \
+  "$prefix/lib/libstratum.a" 'stratum_*'
 echo "stratum $version, $precision, in $prefix"

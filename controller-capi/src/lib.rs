@@ -473,7 +473,7 @@ pub unsafe extern "C" fn stratum_reset(state: *mut StratumState) -> StratumResul
 }
 
 /// Nothing in this library panics; the compiler wants a handler nevertheless.
-#[cfg(all(target_os = "none", not(test)))]
+#[cfg(all(feature = "panic-handler", target_os = "none", not(test)))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {

@@ -326,7 +326,7 @@ fn scenario_files() {
         ),
         ("more than seven rows", "[null_space]", &rows),
         ("zero damping of a joint", "0.3, 0.03]", "0.3, 0.0]"),
-        ("damping over the guard", "0.3, 0.03]", "0.3, 0.3]"),
+        ("damping over the sampling bound", "0.3, 0.03]", "0.3, 0.3]"),
         (
             "unknown posture",
             "posture = \"constant\"",

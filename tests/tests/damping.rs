@@ -1,5 +1,5 @@
-//! The damping guard: its postures are the worst ones, and its bound is where a
-//! sampled loop really becomes unstable.
+//! The sampling bound: its postures are the worst ones, and it lies where a sampled
+//! loop really becomes unstable.
 
 use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointMatrix, JointState, JointVector};
@@ -27,12 +27,15 @@ fn no_posture_is_worse_than_the_committed_ones() {
         diagonal(only)
     }));
     for damping in dampings {
-        let guard = fastest_mode(&model, &damping).rate;
+        let fastest = fastest_mode(&model, &damping).rate;
         let mut states = States::new(11);
         for n in 0..40_000 / 9 {
             let spread = if n % 2 == 0 { 1.0 } else { 0.05 };
             let rate = mode_at(&model, &damping, (states.state().q * spread).into()).rate;
-            assert!(rate <= guard * 1.001, "{rate} above {guard} for {damping}");
+            assert!(
+                rate <= fastest * 1.001,
+                "{rate} above {fastest} for {damping}"
+            );
         }
     }
 }

@@ -24,7 +24,7 @@ pub enum ReferenceSpec {
     },
     /// A circle that reaches its radius in `growth_s`.
     Circle(Turn),
-    /// A spiral: a circle whose radius takes all of `growth_s` to grow.
+    /// The same circle, under the name for a radius that grows until the end.
     Spiral(Turn),
     /// An orientation that turns to and fro about an axis.
     Swing(Swing),

@@ -1,11 +1,11 @@
-//! Guard against a null-space damping that the sampled loop cannot carry.
+//! The sampling bound: the largest null-space damping that the sampled loop carries.
 //!
 //! A joint-space damping D acts on the mass matrix M through a zero-order hold:
 //! a mode of M^-1 D with the rate lambda is multiplied by 1 - h lambda every
 //! cycle, which is unstable for h lambda > 2, and for h lambda > 1 where a cycle
 //! of dead time lies between measurement and torque ([`bound`]). The wrist of the arm is so
-//! light that ordinary values exceed this. M depends on the posture, so the
-//! guard takes the largest rate over a fixed set of postures that contains, for
+//! light that ordinary values exceed this. M depends on the posture, so what is held
+//! to the bound is the largest rate over a fixed set of postures that contains, for
 //! the damping of each single joint and for the reference damping, the worst
 //! one found by a search over the whole joint range.
 
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mass_matrix_of_the_guard_is_that_of_the_cycle() {
+    fn the_mass_matrix_of_the_postures_is_that_of_the_cycle() {
         // With lengths and twists that are not those of right-angled arms too.
         let mut skew = LWR_IV;
         for (link, number) in skew.links.iter_mut().zip(1..) {

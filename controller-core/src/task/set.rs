@@ -242,15 +242,8 @@ impl<T: Real> Levels<T> {
     /// axis that they control.
     pub fn with_gains(mut self, stiffness: T, damping: T) -> Self {
         for level in &mut self.levels {
-            let uniform = |gain: T| {
-                Matrix3::from_fn(|i, j| {
-                    if i == j && level.axes.contains(i) {
-                        gain
-                    } else {
-                        T::ZERO
-                    }
-                })
-            };
+            let uniform =
+                |gain: T| Matrix3::from_diagonal(&level.axes.select(&Vector3::repeat(gain)));
             (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
         }
         self

@@ -1,4 +1,4 @@
-//! Reference motions: of a point straight move, circle and spiral, of an orientation a
+//! Reference motions: of a point straight move and circle, of an orientation a
 //! swing, and rest of both. All start and, where they end, end at rest with zero
 //! acceleration.
 
@@ -22,7 +22,7 @@ pub fn quintic<T: Real>(s: T) -> [T; 3] {
     ]
 }
 
-/// Plane of a circle or spiral, two base-plate axes: the motion starts along
+/// Plane of a circle, two base-plate axes: the motion starts along
 /// the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
@@ -59,8 +59,8 @@ pub enum Trajectory<T: Real> {
         /// Time of the move \[s\].
         duration_s: T,
     },
-    /// radius b(t / growth_s) (cos, sin)(2 pi t / period_s) about the origin. A
-    /// circle reaches its radius soon, a spiral grows all the time.
+    /// radius b(t / growth_s) (cos, sin)(2 pi t / period_s) about the origin: a
+    /// circle that grows from a point.
     Turn {
         /// Plane of the motion.
         plane: Plane,

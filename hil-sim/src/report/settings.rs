@@ -98,7 +98,7 @@ fn gain(gain: &AxisGain) -> String {
 }
 
 fn reference(level: &LevelSpec) -> String {
-    let (kind, turn) = match &level.reference {
+    let turn = match &level.reference {
         ReferenceSpec::Hold {} => return "held".to_string(),
         ReferenceSpec::Move { by_m, duration_s } => {
             return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
@@ -112,11 +112,10 @@ fn reference(level: &LevelSpec) -> String {
                 plain(swing.period_s)
             );
         }
-        ReferenceSpec::Circle(turn) => ("circle", turn),
-        ReferenceSpec::Spiral(turn) => ("spiral", turn),
+        ReferenceSpec::Circle(turn) | ReferenceSpec::Spiral(turn) => turn,
     };
     format!(
-        "{kind} in {}, radius {} m reached in {} s, {} s a turn",
+        "circle in {}, radius {} m reached in {} s, {} s a turn",
         format!("{:?}", turn.plane).to_uppercase(),
         plain(turn.radius_m),
         plain(turn.growth_s),
