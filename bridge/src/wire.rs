@@ -169,10 +169,12 @@ impl Outgoing {
         start_wish: bool,
     ) {
         let mut user = UserData::default();
-        let [strategy, wish, ..] = &mut user.int;
+        let [strategy, wish, mode, ..] = &mut user.int;
         *strategy = JOINT_IMPEDANCE_STRATEGY;
         *wish = i32::from(start_wish);
         if let Some(step) = &self.step {
+            // 0 is for no controller.
+            *mode = 1 + i32::from(step.status.mode.number());
             let residual = narrow(&step.residual);
             for (real, residual) in user.real.iter_mut().zip(residual) {
                 *real = residual;

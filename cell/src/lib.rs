@@ -4,7 +4,8 @@
 //! Bottom-up: [`invalid`], errors for people; [`terminal`], what is printed;
 //! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of
 //! options and usage errors; [`mod@file`] and [`reader`], texts and what they say;
-//! [`scenario`], an experiment as a file.
+//! [`scenario`], an experiment as a file. Beside them, of a program that has to keep a cycle:
+//! [`realtime`], what the system gives it, and [`timing`], how long things took.
 
 pub mod arguments;
 pub mod file;
@@ -12,5 +13,7 @@ pub mod invalid;
 pub mod names;
 pub mod ranges;
 pub mod reader;
+pub mod realtime;
 pub mod scenario;
 pub mod terminal;
+pub mod timing;

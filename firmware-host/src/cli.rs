@@ -24,11 +24,11 @@ use controller_core::{Controller, Reference, TaskSet};
 
 use self::telling::{Flight, Teller, closing, place, prepare, unwritable};
 use crate::doctor;
-use crate::realtime::Realtime;
 use crate::recorder::Recorder;
 use crate::run::{Endpoint, converse};
 use crate::stream::{Stream, StreamFigures};
 use crate::summary::Summary;
+use cell::realtime::Realtime;
 
 /// How far the start posture may be required to be from the scenario's \[deg\].
 const START_DEG: Range<f64> = Range::above(0.0, 360.0);

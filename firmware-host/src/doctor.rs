@@ -4,8 +4,8 @@ use std::net::UdpSocket;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::realtime::{Grant, Realtime};
-use crate::timing::{TimeFigures, Times};
+use cell::realtime::{Grant, Realtime};
+use cell::timing::{TimeFigures, Times};
 
 /// How long each test takes.
 const TEST: Duration = Duration::from_secs(2);

@@ -1,13 +1,11 @@
 //! The controller core on a PC, linked to a robot by KUKA's FRI over UDP.
 //!
 //! All that is here is around the conversation, which is in the `bridge` crate. Scenario
-//! files are those of `cell`, rows of a record those of `record`; no simulator is linked.
+//! files, scheduling and histograms are those of `cell`, rows of a record those of `record`; no simulator is linked.
 //!
 //! - [`cli`]: the command line;
 //! - [`run`]: the socket loop: one datagram in, one out;
 //! - [`peer`]: whom it answers;
-//! - [`realtime`]: scheduling, memory and processor as far as the system permits;
-//! - [`timing`]: histograms of compute time and latency;
 //! - [`recorder`]: every cycle to a file, without blocking the loop;
 //! - [`stream`]: references that arrive over UDP;
 //! - [`summary`]: what a run was;
@@ -18,9 +16,7 @@
 pub mod cli;
 pub mod doctor;
 pub mod peer;
-pub mod realtime;
 pub mod recorder;
 pub mod run;
 pub mod stream;
 pub mod summary;
-pub mod timing;

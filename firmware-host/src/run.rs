@@ -15,10 +15,10 @@ use controller_core::task::orientation;
 use controller_core::{Axes, Target, TaskSet};
 
 use crate::peer::{Peer, Refusal};
-use crate::realtime::Realtime;
 use crate::recorder::Recorder;
 use crate::summary::{AuditSummary, LevelSummary, LinkSummary, Summary, ending};
-use crate::timing::Times;
+use cell::realtime::Realtime;
+use cell::timing::Times;
 
 /// Longest datagram that is looked at; a measurement has 916 bytes.
 const BUFFER: usize = 2048;

@@ -7,9 +7,9 @@ use bridge::session::{Phase, RobotState, Session, StopReason};
 use fri::{ControlScheme, InterfaceState};
 use serde::Serialize;
 
-use crate::realtime::Realtime;
 use crate::stream::StreamFigures;
-use crate::timing::TimeFigures;
+use cell::realtime::Realtime;
+use cell::timing::TimeFigures;
 
 /// The whole run.
 #[derive(Clone, Debug, Serialize)]

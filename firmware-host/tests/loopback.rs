@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use bridge::session::Session;
 use cell::names::PlantKind;
+use cell::realtime::Realtime;
 use cell::scenario::{Scenario, ScenarioSource};
-use firmware_host::realtime::Realtime;
 use firmware_host::run::{Endpoint, converse};
 use firmware_host::summary::Summary;
 use hil_sim::loopback::{self, BridgeClient};

@@ -6,7 +6,7 @@ use std::io;
 
 use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
-use controller_core::{Controller, Measurement};
+use controller_core::{Controller, ControllerConfig, Measurement};
 
 use crate::after_fault::Watch;
 use crate::arm_points::origins;
@@ -54,17 +54,22 @@ impl Experiment {
     /// A configuration that the core refuses, for example a damping that is too
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
-        let config = match self.measurement {
-            MeasurementKind::Fri => self.session()?.controller,
-            MeasurementKind::Direct => {
-                let dead_cycles = self.options.dead_cycles as u8;
-                let mut config = self.scenario.controller_config(dead_cycles)?;
-                config.null_space = config.null_space.stiffened(self.null_stiffness.factor());
-                config
-            }
-        };
-        Controller::new(self.scenario.arm(), &config)
+        Controller::new(self.scenario.arm(), &self.controller_config()?)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
+    }
+
+    /// What that controller is made from.
+    ///
+    /// # Errors
+    /// Tasks that the core does not take.
+    pub fn controller_config(&self) -> Result<ControllerConfig, Invalid> {
+        if self.measurement == MeasurementKind::Fri {
+            return Ok(self.session()?.controller);
+        }
+        let dead_cycles = self.options.dead_cycles as u8;
+        let mut config = self.scenario.controller_config(dead_cycles)?;
+        config.null_space = config.null_space.stiffened(self.null_stiffness.factor());
+        Ok(config)
     }
 
     /// The bridge of a run over FRI.
@@ -146,8 +151,8 @@ impl Experiment {
             self.seed,
             driver.plant_options(self.options),
         );
-        let limits = controller.arm().position_limit();
-        let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
+        let (levels, intervals) = (scenario.levels.len(), contacts.intervals());
+        let mut metrics = Metrics::new(levels, &intervals, scenario.arm(), cycle_s);
         let mut stop = None;
         let mut watch: Option<Watch> = None;
         let mut last_torque = None;
@@ -207,6 +212,7 @@ impl Experiment {
                 state: truth,
                 torque: decision.torque,
                 residual: decision.residual,
+                mode: Some(decision.mode),
                 saturated: decision.saturated,
                 rank: decision.rank,
                 tau_ext: -contact_torque,

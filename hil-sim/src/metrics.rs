@@ -3,6 +3,7 @@
 use std::fmt;
 
 use cell::scenario::{Interval, LevelSpec, Metric, TaskSpec, Unit};
+use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
@@ -11,6 +12,11 @@ use record::run::Sample;
 
 /// Beyond its range by less a joint is at its end: degrees became radians \[rad\].
 const ROUNDING_RAD: f64 = 1e-9;
+
+/// From this share of what the arm's rate limit lets through in a cycle on, the torque
+/// steps: motion, contacts and noise of the built-in scenarios stay below it, a reference
+/// that jumps does not.
+const STEP_SHARE: f64 = 0.5;
 
 /// Mean of what was added.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,6 +129,32 @@ pub struct TorqueFigures {
     pub max_abs_nm: [f64; DOF],
     /// Cycles in which a joint was cut to its limit.
     pub saturated_cycles: usize,
+    /// The largest step of a joint's torque, if one is above its bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<TorqueStep>,
+}
+
+/// The torque of a joint changed much from one cycle to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TorqueStep {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// By how much \[Nm\].
+    pub step_nm: f64,
+    /// Half of its rate limit times the cycle \[Nm\].
+    pub bound_nm: f64,
+    /// In the cycle at this time \[s\].
+    pub t_s: f64,
+}
+
+impl fmt::Display for TorqueStep {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the torque of joint {} stepped by {:.2} Nm in the cycle at {:.4} s, bound {} Nm",
+            self.joint, self.step_nm, self.t_s, self.bound_nm
+        )
+    }
 }
 
 /// Joint figures.
@@ -220,6 +252,10 @@ pub struct Metrics {
     lowest: [f64; DOF],
     highest: [f64; DOF],
     position_limit: JointVector<f64>,
+    /// Of the change of torque in a cycle \[Nm\].
+    step_bound: JointVector<f64>,
+    last_torque: Option<JointVector<f64>>,
+    step: Option<TorqueStep>,
     first: JointVector<f64>,
     last: JointVector<f64>,
     /// Largest force of a hand \[N\].
@@ -231,9 +267,11 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// No cycle yet. `position_limit` \[rad\] is where a joint counts as beyond its range.
+    /// No cycle yet, of `arm` in cycles of `cycle_s` \[s\].
     #[must_use]
-    pub fn new(levels: usize, contacts: &[Interval], position_limit: &JointVector<f64>) -> Self {
+    pub fn new(levels: usize, contacts: &[Interval], arm: &ArmParameters, cycle_s: f64) -> Self {
+        let limit =
+            |value: fn(&LinkParameters) -> f64| JointVector::from_fn(|i, _| value(&arm.links[i]));
         let sums = LevelSums {
             plateaus: vec![Mean::default(); contacts.len()],
             ..LevelSums::default()
@@ -246,7 +284,10 @@ impl Metrics {
             max_torque: [0.0; DOF],
             lowest: [f64::INFINITY; DOF],
             highest: [f64::NEG_INFINITY; DOF],
-            position_limit: *position_limit,
+            position_limit: limit(|link| link.position_limit),
+            step_bound: limit(|link| link.torque_rate_limit) * (STEP_SHARE * cycle_s),
+            last_torque: None,
+            step: None,
             first: JointVector::zeros(),
             last: JointVector::zeros(),
             hand_force: 0.0,
@@ -297,9 +338,29 @@ impl Metrics {
             self.highest[joint] = self.highest[joint].max(q);
             beyond |= q.abs() > self.position_limit[joint] + ROUNDING_RAD;
         }
+        self.add_step(sample);
         self.limits.position += usize::from(beyond);
         self.limits.torque += usize::from(sample.saturated);
         self.limits.rank += usize::from(sample.rank);
+    }
+
+    /// Keeps the step of torque that is farthest above its bound.
+    fn add_step(&mut self, sample: &Sample) {
+        let last = self.last_torque.replace(sample.torque);
+        let Some(last) = last else { return };
+        for joint in 0..DOF {
+            let step_nm = (sample.torque[joint] - last[joint]).abs();
+            let bound_nm = self.step_bound[joint];
+            let most = self.step.map_or(1.0, |step| step.step_nm / step.bound_nm);
+            if step_nm / bound_nm > most {
+                self.step = Some(TorqueStep {
+                    joint: joint + 1,
+                    step_nm,
+                    bound_nm,
+                    t_s: sample.t_s,
+                });
+            }
+        }
     }
 
     /// Tracking figures of the levels.
@@ -371,6 +432,7 @@ impl Metrics {
         TorqueFigures {
             max_abs_nm: self.max_torque,
             saturated_cycles: self.limits.torque,
+            step: self.step,
         }
     }
 

@@ -176,6 +176,7 @@ impl Summary {
         .into_iter()
         .filter(|(_, cycles)| *cycles > 0)
         .map(|(what, cycles)| format!("{what} in {cycles} of {} cycles", self.cycles))
+        .chain(self.torque.step.map(|step| step.to_string()))
         .collect()
     }
 }

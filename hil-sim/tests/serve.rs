@@ -127,6 +127,7 @@ fn lockstep_gives_the_same_bytes_with_faults() {
         assert!(read("a") == read("b"), "{file}");
     }
     let link = summary(folder.path(), "a")["link"].clone();
+    assert!(link.get("own_lateness").is_none(), "virtual time: {link}");
     assert!(link["missed"].as_u64() > Some(5), "{link}");
     assert_eq!(summary(folder.path(), "a")["cycles"], 1000);
     // r of the trace is what the client reports.
@@ -229,7 +230,20 @@ fn paced_by_the_wall_clock_it_gets_to_the_end() {
     assert!(output.status.code().is_some_and(|code| code <= 1), "{text}");
     assert!(text.contains("'hold': allowed: push"), "{text}");
     assert!(client.end() > 200);
-    assert_eq!(summary(folder.path(), "o")["cycles"], 200);
+    let summary = summary(folder.path(), "o");
+    assert_eq!(summary["cycles"], 200);
+    // The robot's own lateness is a row of its own; who timed the answers is said.
+    let own = &summary["link"]["own_lateness"];
+    assert_eq!(own["bound_ms"], 0.5);
+    assert!(own["max_ms"].as_f64() >= own["p999_ms"].as_f64(), "{own}");
+    let stamp = if cfg!(target_os = "linux") {
+        "kernel"
+    } else {
+        "program"
+    };
+    assert_eq!(own["stamp"], stamp);
+    let text = String::from_utf8_lossy(&output.stdout).to_string();
+    assert!(text.contains("robot's own lateness: "), "{text}");
 }
 
 #[test]

@@ -210,3 +210,39 @@ fn a_fault_is_not_lost_over_the_link() {
         );
     }
 }
+
+#[test]
+fn a_reference_that_jumps_steps_the_torque_and_table_and_report_say_so() {
+    let jump = "kind = 'move'\nby_m = [0.0, 0.1, 0.0]\nduration_s = 0.001";
+    let said = run(&scenario(BENT, "position", jump, ""), "--duration 0.5");
+    let step = &said.summary["torque"]["step"];
+    // 10 kNm/s of the LWR allow 20 Nm in 2 ms: the bound is half of that, and the core's own
+    // limit the largest step. The jump lies between the first two cycles.
+    assert_eq!(step["bound_nm"], 10.0);
+    let nm = step["step_nm"].as_f64().expect("a step");
+    // Rounding of a difference of torques up to 176 Nm.
+    assert!(nm > 10.0 && nm <= 20.0 + 1e-12, "{step}");
+    assert!(step["t_s"].as_f64() < Some(0.02), "{step}");
+    let joint = step["joint"].as_u64().expect("a joint");
+    let line = format!("the torque of joint {joint} stepped by {nm:.2} Nm in the cycle at ");
+    assert!(said.text.contains(&line), "{}", said.text);
+    assert!(said.report.contains(&line));
+}
+
+#[test]
+fn no_built_in_scenario_steps_the_torque() {
+    for name in ["two-level", "case-1", "case-2", "hand"] {
+        for options in ["", "--measurement fri"] {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let output = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+                .args(["run", name, "--out", "o"])
+                .args(options.split_whitespace())
+                .current_dir(folder.path())
+                .output()
+                .expect("the program runs");
+            let text = String::from_utf8_lossy(&output.stdout).to_string();
+            assert!(text.contains("verdict"), "{name} {options}");
+            assert!(!text.contains("stepped by"), "{name} {options}: {text}");
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! A simulated run: true values, cycle by cycle.
 
+use controller_core::fault::Mode;
 use controller_core::joint::{DOF, JointState, JointVector};
 
 use crate::channel::{Channel, Place, Value, numbers};
@@ -15,6 +16,8 @@ pub struct Sample {
     pub torque: JointVector<f64>,
     /// r \[Nm\].
     pub residual: JointVector<f64>,
+    /// What the cycle of the controller was part of; none where it is not known.
+    pub mode: Option<Mode>,
     /// Whether a torque was cut to its limit.
     pub saturated: bool,
     /// Whether a task row could not be resolved.
@@ -56,6 +59,7 @@ pub const CHANNELS: &[Channel<Sample>] = &[
     Channel { columns: "tau{joint}", unit: "Nm", meaning: "torque applied from t on, after limits, before the plant's noise", place: Place::File, values: |s, sink| numbers(s.torque.as_slice(), sink) },
     Channel { columns: "tau_ext{joint}", unit: "Nm", meaning: "true tau_ext of (6), -J^T F", place: Place::Both, values: |s, sink| numbers(s.tau_ext.as_slice(), sink) },
     Channel { columns: "r{joint}", unit: "Nm", meaning: "residual", place: Place::Both, values: |s, sink| numbers(s.residual.as_slice(), sink) },
+    Channel { columns: "mode", unit: "", meaning: "number of the controller's mode: 0 running, 1 limited, 2 braking, 3 resting, 4 blind, 5 stopped; empty where it is not known", place: Place::File, values: |s, sink| sink(s.mode.map_or(Value::Empty, |mode| Value::Count(mode.number().into()))) },
     Channel { columns: "conditioning{row}", unit: "1/sqrt(kg)", meaning: "abs R_kk per task row", place: Place::Series, values: |s, sink| numbers(&rows(&s.conditioning), sink) },
     Channel { columns: "hand_force", unit: "N", meaning: "largest force of a hand", place: Place::Series, values: |s, sink| sink(Value::Number(s.hand_force_n)) },
 ];

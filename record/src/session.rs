@@ -20,6 +20,7 @@ pub const CHANNELS: &[Channel<CycleReport>] = &[
     Channel { columns: "tau{joint}", unit: "Nm", meaning: "torque of the controller, gravity included; empty where it did not run", place: Place::File, values: |c, sink| of_step(c, |step| &step.torque, sink) },
     Channel { columns: "sent{joint}", unit: "Nm", meaning: "added torque as sent", place: Place::File, values: |c, sink| numbers(c.sent.as_slice(), sink) },
     Channel { columns: "r{joint}", unit: "Nm", meaning: "residual; empty as `tau`", place: Place::File, values: |c, sink| of_step(c, |step| &step.residual, sink) },
+    Channel { columns: "mode", unit: "", meaning: "number of the controller's mode as in trace.csv; empty as `tau`", place: Place::File, values: |c, sink| sink(c.step.map_or(Value::Empty, |step| Value::Count(step.status.mode.number().into()))) },
     Channel { columns: "fault", unit: "", meaning: "number of the fault, or 0", place: Place::File, values: |c, sink| sink(Value::Count(fault(c))) },
     Channel { columns: "saturated", unit: "", meaning: "bits of joints", place: Place::File, values: |c, sink| sink(Value::Count(c.step.map_or(0, |step| step.status.saturated.0.into()))) },
     Channel { columns: "rank", unit: "", meaning: "bits of rows", place: Place::File, values: |c, sink| sink(Value::Count(c.step.map_or(0, |step| step.status.rank.0.into()))) },

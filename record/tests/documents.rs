@@ -20,6 +20,18 @@ fn the_tables_of_the_document_are_the_channels() {
 }
 
 #[test]
+fn the_column_of_modes_names_them_all() {
+    let mode = run::CHANNELS
+        .iter()
+        .find(|channel| channel.columns == "mode");
+    let meaning = mode.expect("a channel").meaning;
+    for mode in controller_core::fault::Mode::ALL {
+        let named = format!("{} {}", mode.number(), mode.name());
+        assert!(meaning.contains(&named), "{named}: {meaning}");
+    }
+}
+
+#[test]
 fn names_and_values_are_as_many() {
     let sample = run::Sample {
         t_s: 0.5,
@@ -29,6 +41,7 @@ fn names_and_values_are_as_many() {
         },
         torque: [3.0; 7].into(),
         residual: [4.0; 7].into(),
+        mode: Some(controller_core::fault::Mode::Braking),
         saturated: false,
         rank: false,
         tau_ext: [5.0; 7].into(),

@@ -25,8 +25,7 @@ pub fn tell_all(experiment: &Experiment, controller: &Controller<f64>) {
 
 /// A damping above half its bound works, but says so.
 fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
-    let dead_cycles = experiment.options.dead_cycles as u8;
-    let Ok(config) = experiment.scenario.controller_config(dead_cycles) else {
+    let Ok(config) = experiment.controller_config() else {
         return;
     };
     let bound = config.damping_bound();

@@ -15,10 +15,11 @@ use crate::robot::{
     Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, scheme_named,
 };
 use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
-use cell::arguments::values::{number, peer, whole};
+use cell::arguments::values::{number, peer, processor, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, PlantKind};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED, WAIT_S};
+use cell::realtime::Realtime;
 use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
 use record::run::Sample;
@@ -89,6 +90,9 @@ pub struct ServeOptions {
     /// Virtual time: as fast as both sides can, the same bytes every time
     #[arg(long)]
     lockstep: bool,
+    /// Processor for the robot by the wall clock, from 0
+    #[arg(long, value_parser = processor, conflicts_with = "lockstep")]
+    cpu: Option<usize>,
     /// Who decides on command state: auto, handshake (the client, by user data)
     #[arg(long, default_value = "auto")]
     krl: String,
@@ -217,9 +221,16 @@ impl ServeOptions {
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
         let mut sink = |instant: &Sample| files.push(&scenario, instant);
+        let realtime = (!service.lockstep).then(|| Realtime::ask_without_memory(self.cpu));
+        if let Some(realtime) = &realtime {
+            tell(realtime.line());
+        }
         let end = service
             .run(&mut robot, &mut operator, &mut *client, &mut sink)
             .map_err(|error| Invalid::line(error).within(&service.client))?;
+        if let Some(realtime) = &realtime {
+            realtime.release();
+        }
         match end {
             End::Finished => (),
             End::NoClient(why) => {
@@ -227,7 +238,10 @@ impl ServeOptions {
                 return Ok(NO_CLIENT);
             }
         }
-        let summary = robot.summary();
+        let mut summary = robot.summary();
+        if let Some(link) = &mut summary.link {
+            link.realtime = realtime;
+        }
         let command = own_command();
         let setup = robot.setup();
         let choices = Choices {
@@ -331,14 +345,25 @@ fn own_command() -> String {
         .join(" ")
 }
 
-/// The link in one line.
+/// The link in one line, and in another how the robot itself kept the wall clock.
 fn link_line(link: &LinkFigures) -> String {
     let or_dash = |value: Option<f64>, digits: usize| {
         value.map_or("-".to_string(), |value| format!("{value:.digits$}"))
     };
+    let own = link.own_lateness.as_ref().map_or(String::new(), |own| {
+        format!(
+            "robot's own lateness: {} cycles by more than {} ms, p99.9 {:.3} ms, max {:.3} ms; \
+             arrivals by the clock of the {}\n",
+            own.cycles,
+            own.bound_ms,
+            own.p999_ms,
+            own.max_ms,
+            own.stamp.name(),
+        )
+    });
     format!(
         "link: {} % in command state, {} answers, {} missed, {} late, {} rejected, {} lost, \
-         latency {} ms, jitter {} ms, {} fallbacks, torque step {:.2} Nm\n",
+         latency {} ms, jitter {} ms, {} fallbacks, torque step {:.2} Nm\n{own}",
         or_dash(link.command_share.map(|share| share * 100.0), 1),
         link.answers,
         link.missed,

@@ -260,6 +260,7 @@ mod tests {
                 },
                 torque: joints,
                 residual: joints,
+                mode: None,
                 saturated: false,
                 rank: false,
                 tau_ext: joints,

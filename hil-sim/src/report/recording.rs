@@ -337,6 +337,7 @@ mod tests {
             state: JointState { q: zero, dq: zero },
             torque: zero,
             residual: zero,
+            mode: None,
             saturated: false,
             rank: false,
             tau_ext: zero,

@@ -282,9 +282,26 @@ pub fn link(link: &LinkFigures) -> String {
             number(Some(link.largest_torque_step_nm)),
         ),
     ];
+    let own = link.own_lateness.iter().flat_map(|own| {
+        [
+            ("Robot's own late measurements", count(own.cycles)),
+            (
+                "They left late by more than [ms]",
+                number(Some(own.bound_ms)),
+            ),
+            (
+                "Robot's own lateness, p99.9 [ms]",
+                number(Some(own.p999_ms)),
+            ),
+            (
+                "Robot's own lateness, largest [ms]",
+                number(Some(own.max_ms)),
+            ),
+        ]
+    });
     let html = numbers(
         "Datagrams between robot and client, from the first answer on.",
-        rows,
+        rows.into_iter().chain(own),
     );
     if link.events.is_empty() {
         return html;

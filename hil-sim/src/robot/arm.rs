@@ -118,11 +118,7 @@ impl Robot {
             inbox: Inbox::new(),
             counters: Counters::default(),
             pipe: Pipe::new(setup.plant_options.dead_cycles),
-            metrics: Metrics::new(
-                scenario.levels.len(),
-                &contacts.intervals(),
-                &limit(|link| link.position_limit),
-            ),
+            metrics: Metrics::new(scenario.levels.len(), &contacts.intervals(), arm, cycle_s),
             contacts,
             typed: Vec::new(),
             drives_off: false,

@@ -1,10 +1,39 @@
 //! Counters of the link, cycle by cycle and answer by answer.
 
+use std::time::Duration;
+
+use cell::timing::Times;
 use fri::{InterfaceState, Quality};
 
-use super::figures::{EVENTS_MAX, Event, LatencyFigures, LinkFigures};
+use super::figures::{EVENTS_MAX, Event, LatencyFigures, LinkFigures, OwnLateness, Stamp};
 use super::krc::Krc;
 use super::rating::Rating;
+
+/// From here on a measurement counts as late \[cycles\]: what it takes to compute one and a
+/// usual wake-up are less.
+const LATE: f64 = 0.1;
+
+/// How late measurements left.
+#[derive(Clone, Debug)]
+struct Departures {
+    stamp: Stamp,
+    bound_s: f64,
+    late: u64,
+    times: Times,
+}
+
+impl Departures {
+    fn figures(&self) -> OwnLateness {
+        let times = self.times.figures();
+        OwnLateness {
+            cycles: self.late,
+            bound_ms: self.bound_s * 1e3,
+            p999_ms: times.p999_us * 1e-3,
+            max_ms: times.max_us * 1e-3,
+            stamp: self.stamp,
+        }
+    }
+}
 
 /// What was counted.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +46,8 @@ pub struct Counters {
     latency_sum: f64,
     latency_squares: f64,
     latency_max: f64,
+    /// By the wall clock only.
+    departures: Option<Departures>,
 }
 
 impl Counters {
@@ -27,6 +58,25 @@ impl Counters {
         self.latency_sum += latency_s;
         self.latency_squares += latency_s * latency_s;
         self.latency_max = self.latency_max.max(latency_s);
+    }
+
+    /// Counts by the wall clock from now on, in cycles of `cycle_s` \[s\].
+    pub fn keep_time(&mut self, stamp: Stamp, cycle_s: f64) {
+        self.departures = Some(Departures {
+            stamp,
+            bound_s: LATE * cycle_s,
+            late: 0,
+            times: Times::new(),
+        });
+    }
+
+    /// A measurement left `late_s` \[s\] after its time.
+    pub fn departure(&mut self, late_s: f64) {
+        if let Some(departures) = &mut self.departures {
+            departures.late += u64::from(late_s > departures.bound_s);
+            let late = Duration::try_from_secs_f64(late_s.max(0.0));
+            departures.times.add(late.unwrap_or(Duration::MAX));
+        }
     }
 
     /// A cycle that began in `state`.
@@ -69,6 +119,7 @@ impl Counters {
             },
             jitter_ms: variance.map(|variance| variance.sqrt() * 1e3),
             fallbacks: krc.fallbacks(),
+            own_lateness: self.departures.as_ref().map(Departures::figures),
             recoveries: krc.entries().saturating_sub(1),
             ..self.link.clone()
         }

@@ -5,7 +5,7 @@ use fri::{InterfaceState, Measurement};
 
 use super::arm::{Robot, Seen, Start};
 use super::driving::{Driving, Limited};
-use super::figures::Event;
+use super::figures::{Event, Stamp};
 use super::inbox::{self, Answer};
 use super::krc::Now;
 use super::options::{RobotAdds, cycles};
@@ -38,10 +38,30 @@ impl Robot {
         });
     }
 
-    /// An answer has arrived, `since_cycle_start_s` \[s\] after this cycle's
-    /// measurement. Its latency is that plus the cycles since the measurement
-    /// which it answers. One that is not accepted has no effect but on counters.
-    pub fn command(&mut self, datagram: &[u8], since_cycle_start_s: f64) -> Answer {
+    /// The wall clock decides from now on; `stamp` says when answers arrive.
+    pub fn keep_time(&mut self, stamp: Stamp) {
+        self.counters.keep_time(stamp, self.cycle_s);
+    }
+
+    /// By the wall clock: this cycle's measurement left at `at_s` \[s\], `late_s` \[s\]
+    /// after its time.
+    pub fn departed(&mut self, at_s: f64, late_s: f64) {
+        self.inbox.departed(self.cycle, at_s);
+        self.counters.departure(late_s);
+    }
+
+    /// Whether this cycle has its answer.
+    #[must_use]
+    pub fn is_answered(&self) -> bool {
+        self.inbox.is_answered()
+    }
+
+    /// An answer has arrived, `since_measurement_s` \[s\] after this cycle's
+    /// measurement; before it, below 0, can only be one to an earlier measurement. Its
+    /// latency is that plus the time since the measurement which it answers: by the wall
+    /// clock since it left, else whole cycles. One that is not accepted has no effect but
+    /// on counters.
+    pub fn command(&mut self, datagram: &[u8], since_measurement_s: f64) -> Answer {
         let q = self.look().measured.q;
         let order = match order::read(datagram) {
             Ok(order) => order,
@@ -63,7 +83,10 @@ impl Robot {
             return Answer::Rejected;
         }
         let behind = self.cycle - place;
-        let latency_s = behind as f64 * self.cycle_s + since_cycle_start_s;
+        let between_s = self.inbox.between(place, self.cycle);
+        let between_s = between_s.unwrap_or(behind as f64 * self.cycle_s);
+        // Never before its measurement, whatever two clocks say.
+        let latency_s = (between_s + since_measurement_s).max(0.0);
         let in_time = behind == 0 && latency_s <= self.cycle_s;
         self.inbox.accepted(place, in_time.then_some(latency_s));
         self.counters.answer(latency_s, in_time);
@@ -149,6 +172,7 @@ impl Robot {
             state: seen.truth,
             torque: applied,
             residual,
+            mode: self.krc.order().and_then(|order| order.mode),
             saturated,
             rank: false,
             tau_ext: -seen.contact,

@@ -1,5 +1,6 @@
 //! What the link did in a run: the part `link` of summary.json.
 
+use cell::realtime::Realtime;
 use serde::Serialize;
 
 /// Most events that are kept.
@@ -72,6 +73,42 @@ pub struct LatencyFigures {
     pub max: Option<f64>,
 }
 
+/// Who says when an answer has arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stamp {
+    /// The kernel, whenever the program reads it.
+    Kernel,
+    /// The program, when it reads it: its own late wake-ups count as the client's.
+    Program,
+}
+
+impl Stamp {
+    /// As in summary.json.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kernel => "kernel",
+            Self::Program => "program",
+        }
+    }
+}
+
+/// How the robot itself kept the wall clock.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OwnLateness {
+    /// Cycles whose measurement left more than `bound_ms` after its time.
+    pub cycles: u64,
+    /// A tenth of the cycle \[ms\].
+    pub bound_ms: f64,
+    /// How late the measurements left \[ms\]: 99.9 % of them by less.
+    pub p999_ms: f64,
+    /// The latest \[ms\].
+    pub max_ms: f64,
+    /// Who says when answers arrived.
+    pub stamp: Stamp,
+}
+
 /// Figures of the link, from the first answer to the end of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LinkFigures {
@@ -107,6 +144,12 @@ pub struct LinkFigures {
     /// robot bridged a missing answer or changed its way of driving, without what
     /// the client ordered \[Nm\].
     pub largest_torque_step_nm: f64,
+    /// The robot's own lateness, which is not the client's; none in virtual time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_lateness: Option<OwnLateness>,
+    /// What the system gave to the robot; none in virtual time, which needs nothing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub realtime: Option<Realtime>,
     /// What happened, at most 200 of them.
     pub events: Vec<Event>,
 }

@@ -30,6 +30,9 @@ pub struct Inbox {
     receiver: Receiver,
     /// Cycle of the measurement with a counter, at the counter modulo the length.
     sent: Vec<Option<(u16, u64)>>,
+    /// When the measurement of a cycle left, at the cycle modulo the length \[s\]; by the
+    /// wall clock only.
+    departed: Vec<Option<f64>>,
     /// Cycle of the newest answer.
     answered: Option<u64>,
     /// Latency of the answer to the present cycle \[s\].
@@ -43,6 +46,7 @@ impl Inbox {
             sender: Sender::starting_at(1),
             receiver: Receiver::new(),
             sent: vec![None; REMEMBERED],
+            departed: vec![None; REMEMBERED],
             answered: None,
             in_time: None,
         }
@@ -56,6 +60,18 @@ impl Inbox {
             counter,
             reflected: self.receiver.newest(),
         }
+    }
+
+    /// The measurement of `cycle` left at `at_s` \[s\].
+    pub fn departed(&mut self, cycle: u64, at_s: f64) {
+        self.departed[cycle as usize % REMEMBERED] = Some(at_s);
+    }
+
+    /// From the measurement of cycle `earlier` to that of `later` \[s\], where both are
+    /// known.
+    pub fn between(&self, earlier: u64, later: u64) -> Option<f64> {
+        let at = |cycle: u64| self.departed[cycle as usize % REMEMBERED];
+        Some(at(later)? - at(earlier)?)
     }
 
     /// Whether an answer was accepted.
@@ -100,6 +116,11 @@ impl Inbox {
     pub fn accepted(&mut self, cycle: u64, in_time: Option<f64>) {
         self.answered = Some(cycle);
         self.in_time = self.in_time.or(in_time);
+    }
+
+    /// Whether the present cycle has an answer in time.
+    pub fn is_answered(&self) -> bool {
+        self.in_time.is_some()
     }
 
     /// Latency of the answer to this cycle \[s\], if there was one; the next begins.

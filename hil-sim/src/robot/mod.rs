@@ -37,7 +37,9 @@ mod summary;
 
 pub use arm::{Robot, RobotSetup};
 pub(crate) use driving::Driving;
-pub use figures::{Event, LatencyFigures, LinkFigures, QualityCycles, Rejected, StateCycles};
+pub use figures::{
+    Event, LatencyFigures, LinkFigures, OwnLateness, QualityCycles, Rejected, Stamp, StateCycles,
+};
 pub use fri::InterfaceState as State;
 pub use fri::measurement::LEN as MEASUREMENT_BYTES;
 pub use inbox::Answer;

@@ -1,6 +1,7 @@
 //! Datagrams on the robot's side: what an answer orders, whether command state may begin
 //! with it, and what a measurement is filled with.
 
+use controller_core::fault::Mode;
 use controller_core::joint::{DOF, JointVector};
 use fri::{Command, CommandPacket, ControlScheme, Error, Flags, UserData};
 
@@ -31,6 +32,8 @@ pub struct Order {
     pub strategy: i32,
     /// int\[1\] = 1: command state is asked for.
     pub wants_command: bool,
+    /// int\[2\]: by convention of this simulation the client's mode plus 1.
+    pub mode: Option<Mode>,
     /// real\[0..7\]: by convention of this simulation the client's residual \[Nm\].
     pub residual: JointVector<f64>,
 }
@@ -144,6 +147,10 @@ fn order(command: &Command, user: &UserData) -> Order {
         damping: within(given(Flags::JOINT_DAMPING, &command.joint_damping), 1.0),
         strategy: user.int[0],
         wants_command: user.int[1] == 1,
+        mode: user.int[2]
+            .checked_sub(1)
+            .and_then(|number| Mode::ALL.get(usize::try_from(number).ok()?))
+            .copied(),
         // User data are free; those that are no numbers read as zero.
         residual: JointVector::from_fn(|i, _| match user.real[i] {
             real if real.is_finite() => real.into(),

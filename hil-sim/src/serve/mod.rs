@@ -5,6 +5,7 @@ mod console;
 mod paced;
 mod serial;
 mod service;
+mod stamped;
 mod transport;
 mod udp;
 
@@ -14,7 +15,7 @@ use std::time::Instant as Clock;
 pub use console::{Operator, Wish};
 pub use serial::Serial;
 pub use service::{Client, End, Service};
-pub use transport::Transport;
+pub use transport::{Arrival, Transport};
 pub use udp::Udp;
 
 use crate::link::LockStep;

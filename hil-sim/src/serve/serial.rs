@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use bridge::framing::{self, DATAGRAM_MAX, Deframer, Fed};
 use serial2::SerialPort;
 
-use super::transport::{POLL, Transport, silence};
+use super::transport::{Arrival, POLL, Transport, silence};
 use cell::invalid::Invalid;
 
 /// Bits per second; a pseudo terminal does not care.
@@ -110,7 +110,12 @@ impl Transport for Serial {
         self.read(deadline, Duration::from_millis(1))
     }
 
-    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
-        self.read(deadline, POLL)
+    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<Arrival<'_>>> {
+        let read = self.read(deadline, POLL)?;
+        // A line has no times: its bytes arrive when they are read.
+        Ok(read.map(|datagram| Arrival {
+            datagram,
+            waited: Duration::ZERO,
+        }))
     }
 }

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind};
 use std::time::{Duration, Instant};
 
 use crate::link::{Expect, Peer};
+use crate::robot::Stamp;
 
 /// How long a client may take to answer in lock-step before it counts as gone.
 pub const PATIENCE: Duration = Duration::from_secs(2);
@@ -19,6 +20,15 @@ pub(super) const NOTHING: Duration = Duration::from_millis(5);
 
 /// Between looks at the transport where time counts.
 pub(super) const POLL: Duration = Duration::from_micros(50);
+
+/// A datagram that was waited for by the clock.
+#[derive(Debug)]
+pub struct Arrival<'a> {
+    /// Its bytes.
+    pub datagram: &'a [u8],
+    /// How long it lay on this PC before it was read, by the transport's [`Stamp`].
+    pub waited: Duration,
+}
 
 /// A way to one client.
 pub trait Transport {
@@ -36,11 +46,21 @@ pub trait Transport {
 
     /// As [`Transport::receive`], ends at `deadline` to a tenth of a millisecond: the
     /// system's own timeouts are whole ticks of several milliseconds. The datagram
-    /// may be noticed that much late as well.
+    /// may be noticed that much late as well; [`Arrival::waited`] says how much.
     ///
     /// # Errors
     /// Anything but silence.
-    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>>;
+    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<Arrival<'_>>>;
+
+    /// Who says when a datagram has arrived.
+    fn stamp(&self) -> Stamp {
+        Stamp::Program
+    }
+
+    /// The clock of its deadlines.
+    fn now(&self) -> Instant {
+        Instant::now()
+    }
 }
 
 /// Whether nothing came or went, but nothing is wrong.
@@ -105,8 +125,8 @@ mod tests {
             Ok(Some(&self.1))
         }
 
-        fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
-            self.receive(deadline)
+        fn receive_on_time(&mut self, _: Instant) -> io::Result<Option<Arrival<'_>>> {
+            unreachable!("lock-step has no clock")
         }
     }
 

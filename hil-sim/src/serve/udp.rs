@@ -4,7 +4,9 @@ use std::io::{self, ErrorKind};
 use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
-use super::transport::{NOTHING, POLL, Transport, silence};
+use super::stamped::Stamped;
+use super::transport::{Arrival, NOTHING, POLL, Transport, silence};
+use crate::robot::Stamp;
 use cell::invalid::Invalid;
 
 /// More than any datagram of the protocol.
@@ -14,6 +16,7 @@ const BUFFER: usize = 2048;
 /// nobody else.
 pub struct Udp {
     socket: UdpSocket,
+    stamped: Stamped,
     buffer: [u8; BUFFER],
 }
 
@@ -38,6 +41,7 @@ impl Udp {
             Invalid::new("--remote", remote, allowed)
         })?;
         Ok(Self {
+            stamped: Stamped::on(&socket),
             socket,
             buffer: [0; BUFFER],
         })
@@ -52,23 +56,26 @@ impl Transport for Udp {
         }
     }
 
-    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
-        self.socket.set_nonblocking(true)?;
-        let received = loop {
-            match self.socket.recv(&mut self.buffer) {
-                Ok(length) => break Ok(Some(length)),
+    fn receive_on_time(&mut self, deadline: Instant) -> io::Result<Option<Arrival<'_>>> {
+        loop {
+            match self.stamped.receive(&self.socket, &mut self.buffer) {
+                Ok((length, waited)) => {
+                    let datagram = self.buffer.get(..length).unwrap_or(&self.buffer);
+                    return Ok(Some(Arrival { datagram, waited }));
+                }
                 Err(error) if nobody(&error) || silence(&error) => (),
-                Err(error) => break Err(error),
+                Err(error) => return Err(error),
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                break Ok(None);
+                return Ok(None);
             }
             std::thread::sleep(left.min(POLL));
-        };
-        self.socket.set_nonblocking(false)?;
-        let buffer = &self.buffer;
-        received.map(|length| length.map(|length| &buffer[..length]))
+        }
+    }
+
+    fn stamp(&self) -> Stamp {
+        self.stamped.stamp()
     }
 
     fn receive(&mut self, deadline: Instant) -> io::Result<Option<&[u8]>> {
@@ -93,4 +100,47 @@ impl Transport for Udp {
 
 fn nobody(error: &io::Error) -> bool {
     error.kind() == ErrorKind::ConnectionRefused
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a datagram waited is counted from its arrival on, however late it is read.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_kernel_says_when_a_datagram_came() {
+        let client = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        let at = client.local_addr().expect("an address");
+        let mut robot = Udp::open(at, 0).expect("loopback");
+        assert_eq!(robot.stamp(), Stamp::Kernel);
+        let to = robot.socket.local_addr().expect("an address");
+        // The kernel begins to stamp a moment after it was asked to; until then a datagram
+        // has the time at which it is read.
+        let stamps = (0..1000).any(|_| {
+            client.send_to(&[7; 376], to).expect("sent");
+            std::thread::sleep(Duration::from_millis(2));
+            let arrival = robot.receive_on_time(Instant::now()).expect("a socket");
+            arrival.is_some_and(|arrival| arrival.waited >= Duration::from_millis(1))
+        });
+        assert!(stamps, "2 s without one");
+        for asleep in [Duration::from_millis(30), Duration::from_millis(2)] {
+            let before = Instant::now();
+            client.send_to(&[7; 376], to).expect("sent");
+            let after = Instant::now();
+            std::thread::sleep(asleep);
+            let arrival = robot.receive_on_time(Instant::now()).expect("a socket");
+            let Arrival { datagram, waited } = arrival.expect("it has come");
+            assert_eq!(datagram, [7; 376]);
+            // It came between the two looks at the clock, and was read by now.
+            assert!(waited <= before.elapsed() && waited >= asleep, "{waited:?}");
+            assert!(waited + (after - before) >= asleep);
+        }
+        assert!(
+            robot
+                .receive_on_time(Instant::now())
+                .expect("a socket")
+                .is_none()
+        );
+    }
 }

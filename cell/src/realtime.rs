@@ -1,14 +1,14 @@
-//! Scheduling, memory and processor of the control thread, as far as the system
+//! Scheduling, memory and processor of the thread that keeps the cycle, as far as the system
 //! permits. What it does not permit is said, not hidden.
 
 use serde::Serialize;
 
-/// Priority of the control thread, below that of the kernel's own threads.
+/// Priority of the thread that keeps the cycle, below that of the kernel's own threads.
 #[cfg(unix)]
 const PRIORITY: u8 = 80;
 
 /// What was asked for and what was given.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Realtime {
     /// First-in-first-out scheduling above all ordinary threads.
     pub fifo: Grant,
@@ -52,6 +52,25 @@ impl Realtime {
         }
     }
 
+    /// Asks for scheduling, and for a processor if one is named; for a program whose memory
+    /// grows, which under a limit of locked memory would end it.
+    #[must_use]
+    pub fn ask_without_memory(cpu: Option<usize>) -> Self {
+        Self {
+            fifo: fifo(),
+            memory: Grant::NotAsked,
+            cpu: cpu.map_or(Grant::NotAsked, own_cpu),
+        }
+    }
+
+    /// The calling thread becomes an ordinary one again: what follows needs no cycle and
+    /// must not keep others from theirs.
+    pub fn release(&self) {
+        if self.fifo == Grant::Given {
+            ordinary();
+        }
+    }
+
     /// One line.
     #[must_use]
     pub fn line(&self) -> String {
@@ -81,6 +100,17 @@ fn fifo() -> Grant {
             reason(&error)
         )),
     }
+}
+
+#[cfg(unix)]
+fn ordinary() {
+    use thread_priority::{
+        NormalThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
+        set_thread_priority_and_policy, thread_native_id,
+    };
+    let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
+    // Giving a priority back is always allowed.
+    let _ = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, policy);
 }
 
 #[cfg(unix)]
@@ -123,6 +153,9 @@ fn own_cpu(cpu: usize) -> Grant {
 fn fifo() -> Grant {
     Grant::Refused("SCHED_FIFO is not on this system; it needs Linux".into())
 }
+
+#[cfg(not(unix))]
+fn ordinary() {}
 
 #[cfg(not(target_os = "linux"))]
 fn lock_memory() -> Grant {
