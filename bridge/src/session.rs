@@ -19,6 +19,7 @@ mod config;
 mod report;
 
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
+use controller_core::fault::Mode;
 use controller_core::joint::{DOF, JointState, JointVector, zeros};
 use controller_core::ranges::{HOLD_S, INTERVAL_FACTORS};
 use controller_core::real::Real;
@@ -61,6 +62,8 @@ pub struct Session {
     in_command: u64,
     /// Cycles since stopping began.
     stopping: u64,
+    /// Those of them in which the controller still brakes an arm with a fault.
+    braked: u64,
     /// Where the robot's own stiffness holds the arm, once it does \[rad\].
     hold: Option<[f32; DOF]>,
     /// What the robot added in the last cycle \[Nm\].
@@ -90,6 +93,7 @@ impl Session {
             first_command: None,
             in_command: 0,
             stopping: 0,
+            braked: 0,
             hold: None,
             robot_part: zeros(),
             cycle_s: 0.0,
@@ -306,6 +310,9 @@ impl Session {
         self.phase = match self.phase {
             Phase::Stopping => {
                 self.stopping += 1 + u64::from(lost);
+                if self.brakes() {
+                    self.braked = self.stopping;
+                }
                 let rest_s = HOLD_S + HANDOVER_S;
                 if self.stopping as i64 > cycles(rest_s, self.cycle_s) {
                     Phase::Finished
@@ -368,6 +375,7 @@ impl Session {
         if self.stop.is_none() {
             self.stop = Some(reason);
             self.stopping = 0;
+            self.braked = 0;
             if self.phase.is_in_command() {
                 self.phase = Phase::Stopping;
             }
@@ -443,16 +451,28 @@ impl Session {
         share * (1.0 - self.stiffness_share())
     }
 
+    /// Whether the controller brakes an arm with a fault, and has not done so for as long
+    /// as a reference takes to come to rest.
+    fn brakes(&self) -> bool {
+        let step = self.last.and_then(|last| last.step);
+        let braking = step.is_some_and(|step| step.status.mode == Mode::Braking);
+        let longest = cycles(HOLD_S, self.cycle_s);
+        braking && self.stopping as i64 <= longest
+    }
+
     /// Share of the robot's own stiffness that holds the arm, 0 to 1: after the
-    /// reference has come to rest, or at once where the controller has a fault.
+    /// reference has come to rest, or an arm with a fault has; at once where nothing
+    /// brakes it.
     fn stiffness_share(&self) -> f64 {
         match self.phase {
             Phase::Stopping => {}
             Phase::Finished => return 1.0,
             _ => return 0.0,
         }
-        let brake_s = if self.halted || self.state.fault().is_some() {
+        let brake_s = if self.halted {
             0.0
+        } else if self.state.fault().is_some() {
+            self.braked as f64 * self.cycle_s
         } else {
             HOLD_S
         };

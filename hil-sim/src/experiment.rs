@@ -8,7 +8,7 @@ use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
 use controller_core::{Controller, ControllerConfig, Measurement};
 
-use crate::after_fault::Watch;
+use crate::after_fault::{Acting, Ending};
 use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::ControllerKind;
@@ -101,10 +101,6 @@ impl Experiment {
             progress(instant.t_s / self.scenario.duration_s);
             sink(instant)
         })?;
-        // The robot cannot know why its client gave up.
-        if let Some(fault) = client.session.fault() {
-            robot.abort(Stop::Fault(fault));
-        }
         Ok(Summary {
             controller: self.controller.name(),
             ..robot.summary()
@@ -153,27 +149,22 @@ impl Experiment {
         );
         let (levels, intervals) = (scenario.levels.len(), contacts.intervals());
         let mut metrics = Metrics::new(levels, &intervals, scenario.arm(), cycle_s);
-        let mut stop = None;
-        let mut watch: Option<Watch> = None;
-        let mut last_torque = None;
+        let mut ending = Ending::new(cycle_s);
 
         for cycle in 0.. {
             let t_s = cycle as f64 * cycle_s;
-            let over = match &watch {
-                None => cycle >= cycles,
-                Some(watch) => watch.is_over(t_s),
-            };
-            if over {
-                break;
-            }
             let truth = *plant.state();
             let unsafe_motion = UnsafeMotion::of(&truth, controller.arm().speed_limit());
             let lost =
                 unsafe_motion.filter(|motion| matches!(motion, UnsafeMotion::NotFinite { .. }));
-            // Nothing can act on it any more, or nobody wants to.
-            let ended = lost.map(Stop::Unsafe).or_else(interrupt::stop);
-            if ended.is_some() {
-                stop = stop.or(ended);
+            if let Some(stop) = lost.map(Stop::Unsafe).or_else(interrupt::stop) {
+                ending.at_once(stop);
+            }
+            let over = match ending.has_begun() {
+                false => cycle >= cycles,
+                true => ending.is_over(),
+            };
+            if over {
                 break;
             }
             let JointState { q, dq } = plant.measure();
@@ -185,17 +176,12 @@ impl Experiment {
             let reference = scenario.reference(&origins, &scenario.start(), t_s);
             let motors = *plant.motors().unwrap_or(&truth);
             let decision = driver.decide(&measurement, &reference, &motors);
-            let trouble = decision.fault.map(Stop::Fault);
-            let trouble = trouble.or(unsafe_motion.map(Stop::Unsafe));
-            if stop.is_none() && trouble.is_some() {
-                stop = trouble;
-                let change = decision.torque - last_torque.unwrap_or(decision.torque);
-                watch = Some(Watch::new(t_s, &truth, change.amax()));
-            }
-            last_torque = Some(decision.torque);
-            if let Some(watch) = &mut watch {
-                watch.add(t_s, &truth, decision.mode.name());
-            }
+            let acting = Acting {
+                torque: decision.torque,
+                fault: decision.fault,
+                mode: Some(decision.mode),
+            };
+            ending.cycle(t_s, &truth, unsafe_motion, &acting);
 
             contacts.take_hold(t_s, plant.model(), &truth);
             let (contact_torque, hand_force_n) = contacts.joint_torque(t_s, plant.model(), &truth);
@@ -220,7 +206,7 @@ impl Experiment {
                 conditioning: decision.view.conditioning,
                 levels,
             };
-            if watch.is_none() {
+            if !ending.has_begun() {
                 metrics.add(&sample);
             }
             sink(&sample)?;
@@ -232,14 +218,10 @@ impl Experiment {
                 progress(cycle as f64 / cycles as f64);
             }
         }
-        let summary = self.summary(&metrics, stop.as_ref());
-        Ok(Summary {
-            after_fault: watch.map(|watch| watch.seen()),
-            ..summary
-        })
+        Ok(self.summary(&metrics, &ending))
     }
 
-    fn summary(&self, metrics: &Metrics, stop: Option<&Stop>) -> Summary {
+    fn summary(&self, metrics: &Metrics, ending: &Ending) -> Summary {
         let conditions = Conditions {
             plant: self.plant,
             contacts: self.contacts,
@@ -248,7 +230,7 @@ impl Experiment {
         };
         Summary {
             controller: self.controller.name(),
-            ..Summary::of(&self.scenario, &conditions, self.seed, metrics, stop)
+            ..Summary::of(&self.scenario, &conditions, self.seed, metrics, ending)
         }
     }
 }

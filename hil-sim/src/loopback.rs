@@ -41,11 +41,11 @@ impl Peer for BridgeClient {
     ) -> io::Result<bool> {
         let mut answer = [0; ANSWER_LEN];
         let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
-        let answered = outcome == Outcome::Answered;
-        if answered {
+        if outcome == Outcome::Answered {
             answers.push(answer.to_vec());
         }
-        Ok(answered)
+        // What it doubts it leaves without answer: it is not gone.
+        Ok(true)
     }
 }
 
@@ -67,6 +67,8 @@ pub fn run(
             robot.abort(stop);
         }
         link.cycle(robot, client)?;
+        let step = client.session.last().and_then(|cycle| cycle.step);
+        robot.hear(step.map(|step| step.status));
         if let Some(instant) = robot.advance() {
             sink(&instant, &client.session)?;
         }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use cell::scenario::{Metric, Scenario};
 
-use crate::after_fault::AfterFault;
+use crate::after_fault::{AfterFault, Ending};
 use crate::metrics::{
     self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
     TorqueFigures,
@@ -100,30 +100,27 @@ pub struct Summary {
 
 impl Summary {
     /// What the figures say of a run of `scenario`, of a client on the robot link; a
-    /// `stop` stands above every limit.
-    #[must_use]
-    pub fn of(
+    /// reason of its `ending` stands above every limit.
+    pub(crate) fn of(
         scenario: &Scenario,
         conditions: &Conditions,
         seed: u64,
         metrics: &Metrics,
-        stop: Option<&Stop>,
+        ending: &Ending,
     ) -> Self {
         let levels = metrics.levels(&scenario.levels);
         let acceptance = judge(scenario, conditions, &levels);
         let mut faults = FaultCounts::default();
-        let (verdict, reason) = match stop {
+        if let Some(Stop::Fault(fault)) = ending.stop() {
+            faults.add(fault.kind);
+        }
+        let (verdict, reason) = match ending.stop() {
             None => {
                 let failures = failures(&acceptance, metrics);
                 let missing = missing(scenario, &acceptance, metrics, &levels);
                 verdict(&failures, &missing)
             }
-            Some(stop) => {
-                if let Stop::Fault(fault) = stop {
-                    faults.add(fault.kind);
-                }
-                (Verdict::Stopped, Some(stop.to_string()))
-            }
+            Some(stop) => (Verdict::Stopped, Some(stop.to_string())),
         };
         let has_hands = conditions.contacts && !scenario.hands.is_empty();
         Self {
@@ -145,7 +142,7 @@ impl Summary {
             hand_force_max_n: has_hands.then_some(metrics.hand_force),
             limits: metrics.limits,
             faults,
-            after_fault: None,
+            after_fault: ending.seen(),
             link: None,
         }
     }

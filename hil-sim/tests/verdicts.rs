@@ -170,8 +170,7 @@ fn a_posture_that_drifts_is_announced_with_how_far() {
     assert!(!said.notes.contains("drifts"), "{}", said.notes);
 }
 
-/// A fault is the verdict however the controller is linked: over FRI the robot sees of it
-/// that its client gives command state back.
+/// A fault is the verdict however the controller is linked, and the arm is brought to rest.
 #[test]
 fn a_fault_is_not_lost_over_the_link() {
     let text = std::fs::read_to_string("../cell/scenarios/two-level.toml").expect("built in");
@@ -183,6 +182,7 @@ fn a_fault_is_not_lost_over_the_link() {
         .replace("start_deg = [0.0,", "start_deg = [169.0,")
         .replace("radius_m = 0.1", "radius_m = 0.3");
     std::fs::write(&file, far).expect("a file");
+    let mut times = Vec::new();
     for measurement in ["direct", "fri"] {
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_hil-sim"))
             .args([
@@ -208,6 +208,41 @@ fn a_fault_is_not_lost_over_the_link() {
             reason.starts_with("implausible: position [rad] of joint 1"),
             "{reason}"
         );
+        let after = &summary["after_fault"];
+        assert_eq!(after["mode"], "resting", "{measurement}: {after}");
+        assert!(
+            after["rest_after_s"]
+                .as_f64()
+                .is_some_and(|time| time < 0.3),
+            "{after}"
+        );
+        times.push(after["t_s"].as_f64().expect("a time"));
+    }
+    // The damping of the null space differs, and with it how joint 1 gets there.
+    assert!((times[0] - times[1]).abs() < 0.1, "{times:?}");
+}
+
+/// A true speed that no arm may have is the verdict before the fault that the controller
+/// makes of it, and over FRI the robot itself ends the motion.
+#[test]
+fn an_unsafe_speed_is_braked_on_either_side_of_the_link() {
+    // Half a metre away at once: the torque of all joints is at its limit.
+    let far = "kind = 'move'\nby_m = [0.0, 0.5, 0.0]\nduration_s = 0.001";
+    let own = scenario(BENT, "position", far, "");
+    for measurement in ["direct", "fri"] {
+        let said = run(&own, &format!("--measurement {measurement}"));
+        assert_eq!(said.code, Some(3), "{}", said.text);
+        let reason = said.summary["reason"].as_str().expect("a reason");
+        assert!(reason.starts_with("speed of joint"), "{reason}");
+        assert_eq!(said.summary["faults"]["implausible"], 0);
+        let after = &said.summary["after_fault"];
+        assert!(
+            after["rest_after_s"]
+                .as_f64()
+                .is_some_and(|time| time < 0.3),
+            "{after}"
+        );
+        assert!(after["travel_deg"].as_f64() < Some(16.0), "{after}");
     }
 }
 

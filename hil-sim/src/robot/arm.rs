@@ -1,6 +1,7 @@
 //! The robot: its parts, where it is, and what may be done to it besides answers.
 
 use controller_core::Target;
+use controller_core::fault::Status;
 use controller_core::joint::{JointMatrix, JointState, JointVector};
 use fri::{InterfaceState, Quality};
 
@@ -12,6 +13,7 @@ use super::krc::Krc;
 use super::model::RobotModel;
 use super::options::RobotOptions;
 use super::rating::Rating;
+use crate::after_fault::Ending;
 use crate::contact::{Contacts, push_torque};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
@@ -62,7 +64,9 @@ pub struct Robot {
     pub(super) seen: Option<Seen>,
     /// Torque of the last cycle \[Nm\].
     pub(super) applied: Option<JointVector<f64>>,
-    pub(super) stop: Option<Stop>,
+    pub(super) ending: Ending,
+    /// What the client's controller says of itself, where it can.
+    pub(super) client: Option<Status>,
     pub(super) ended_in_monitor: bool,
     /// Why the last datagram that is no answer is none.
     pub(super) unread: Option<fri::Error>,
@@ -127,7 +131,8 @@ impl Robot {
             start: None,
             seen: None,
             applied: None,
-            stop: None,
+            ending: Ending::new(cycle_s),
+            client: None,
             ended_in_monitor: false,
             unread: None,
             setup,
@@ -172,6 +177,13 @@ impl Robot {
         let start = self.start.as_ref()?;
         let cycles = self.cycle.checked_sub(start.cycle)?;
         Some(cycles as f64 * self.cycle_s)
+    }
+
+    /// Scenario time \[s\], negative before it has begun; robot time while its zero is
+    /// still unknown.
+    pub(super) fn clock_s(&self) -> f64 {
+        let zero = self.start.as_ref().map_or(0, |start| start.cycle);
+        (self.cycle as f64 - zero as f64) * self.cycle_s
     }
 
     /// Scenario time for contacts, where it must be a number: they have not begun
@@ -252,15 +264,15 @@ impl Robot {
         &self.setup
     }
 
-    /// Whether the scenario is over, or something stopped it.
+    /// Whether the scenario is over, or something has ended it.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         let end = self.setup.scenario.cycles() as u64;
-        let over = self
-            .start
-            .as_ref()
-            .is_some_and(|start| self.cycle >= start.cycle + end);
-        over || self.stop.is_some()
+        match (&self.start, self.ending.has_begun()) {
+            (_, true) => self.ending.is_over(),
+            (None, _) => false,
+            (Some(start), _) => self.cycle >= start.cycle + end,
+        }
     }
 
     /// Leaves command state for good; measurements say monitor from now on.
@@ -271,7 +283,13 @@ impl Robot {
 
     /// Ends the run early.
     pub fn abort(&mut self, stop: Stop) {
-        self.stop.get_or_insert(stop);
+        self.ending.at_once(stop);
+    }
+
+    /// What the client's controller says of this cycle, if it acts. No datagram carries it: only a
+    /// client in this process can tell. A fault ends the run as unsafe motion does.
+    pub fn hear(&mut self, status: Option<Status>) {
+        self.client = status;
     }
 
     /// Turns the drives off or on.

@@ -10,6 +10,7 @@ use super::inbox::{self, Answer};
 use super::krc::Now;
 use super::options::{RobotAdds, cycles};
 use super::order;
+use crate::after_fault::Acting;
 use crate::arm_points::origins;
 use crate::contact::push_torque;
 use crate::sample::{Stop, UnsafeMotion};
@@ -96,12 +97,13 @@ impl Robot {
     /// Ends the cycle: rates the link, moves the arm. What the cycle was, if
     /// scenario time runs. Before the first answer nothing moves and no time passes.
     pub fn advance(&mut self) -> Option<Sample> {
-        if !self.inbox.has_begun() || self.stop.is_some() {
+        if !self.inbox.has_begun() || self.ending.is_over() {
             return None;
         }
         let seen = self.look();
-        if let Some(motion) = UnsafeMotion::of(&seen.truth, &self.speed_limit) {
-            self.stop = Some(Stop::Unsafe(motion));
+        let unsafe_motion = UnsafeMotion::of(&seen.truth, &self.speed_limit);
+        if let Some(lost @ UnsafeMotion::NotFinite { .. }) = unsafe_motion {
+            self.ending.at_once(Stop::Unsafe(lost));
             return None;
         }
         let state = self.krc.state();
@@ -109,6 +111,7 @@ impl Robot {
         let now = Now {
             rating: &self.rating,
             drives_on: self.drives_on(),
+            unsafe_motion,
             q: &seen.measured.q,
             mass_matrix: &seen.mass_matrix,
         };
@@ -134,12 +137,20 @@ impl Robot {
             torque: applied,
             saturated,
         } = whole.limited(motors, &self.torque_limit);
-        if let (Some(last), true) = (self.applied, bridging) {
+        let by_itself = unsafe_motion.is_some() || self.ending.has_begun();
+        if let (Some(last), true) = (self.applied, bridging && !by_itself) {
             let by_link = applied - last - self.krc.ordered_change();
             let largest = &mut self.counters.link.largest_torque_step_nm;
             *largest = largest.max(by_link.amax());
         }
         self.applied = Some(applied);
+        let acting = Acting {
+            torque: applied,
+            fault: self.client.and_then(|status| status.fault),
+            mode: self.client.map(|status| status.mode),
+        };
+        self.ending
+            .cycle(self.clock_s(), &seen.truth, unsafe_motion, &acting);
         let t_s = self.time_s();
         self.counters
             .cycle(state, self.rating.quality(), t_s.is_some());
@@ -180,7 +191,9 @@ impl Robot {
             conditioning: Vec::new(),
             levels,
         };
-        self.metrics.add(&sample);
+        if !self.ending.has_begun() {
+            self.metrics.add(&sample);
+        }
         Some(sample)
     }
 

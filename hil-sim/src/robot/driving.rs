@@ -106,6 +106,11 @@ impl Passage {
         self.done = 0;
     }
 
+    /// Ends it early: what is new acts alone.
+    pub fn end(&mut self) {
+        self.done = self.length;
+    }
+
     /// Whether it is under way.
     #[must_use]
     pub fn is_running(&self) -> bool {

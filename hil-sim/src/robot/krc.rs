@@ -11,6 +11,7 @@ use super::options::{Krl, RobotOptions, cycles};
 use super::order::Order;
 use super::rating::Rating;
 use crate::plant::Impedance;
+use crate::sample::UnsafeMotion;
 
 /// Why the content of an answer is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,8 @@ pub struct Now<'a> {
     pub rating: &'a Rating,
     /// Whether the drives have power.
     pub drives_on: bool,
+    /// A motion that the robot itself ends.
+    pub unsafe_motion: Option<UnsafeMotion>,
     /// Measured position \[rad\].
     pub q: &'a JointVector<f64>,
     /// M of the robot's model \[kg m2\].
@@ -74,6 +77,8 @@ pub struct Krc {
     arrived: JointVector<f64>,
     change: JointVector<f64>,
     left: bool,
+    /// The robot ended a motion by itself.
+    braked: bool,
     fallbacks: u64,
     entries: u64,
     told: String,
@@ -114,6 +119,7 @@ impl Krc {
             arrived: JointVector::zeros(),
             change: JointVector::zeros(),
             left: false,
+            braked: false,
             fallbacks: 0,
             entries: 0,
             told: String::new(),
@@ -202,7 +208,10 @@ impl Krc {
         self.fresh = false;
         if self.commands {
             self.bridge();
-            if let Some((reason, fault)) = self.must_stop(now) {
+            if let Some(motion) = now.unsafe_motion {
+                self.brake(now, &motion);
+                added.void();
+            } else if let Some((reason, fault)) = self.must_stop(now) {
                 self.stop(now, &reason, fault);
                 added.void();
             }
@@ -215,7 +224,10 @@ impl Krc {
         let wanted = if self.commands {
             self.ordered(now, added)
         } else {
-            let [stiffness, ratio] = self.own_springs();
+            let [stiffness, ratio] = match self.braked {
+                true => self.position_springs(),
+                false => self.own_springs(),
+            };
             Driving::by_springs(self.springs(now, &stiffness, &ratio))
         };
         // In monitor state nothing arrives: what fades then is the link's doing.
@@ -285,6 +297,18 @@ impl Krc {
         self.say(format!("monitor state: {reason}"));
     }
 
+    /// Back to monitor state for good: the springs of the position scheme take every joint
+    /// where it is, without a passage, as what the client orders is what moves it.
+    fn brake(&mut self, now: &Now<'_>, motion: &UnsafeMotion) {
+        self.hold = *now.q;
+        self.from = self.hold;
+        self.passage.end();
+        self.braked = true;
+        self.leave();
+        self.fallbacks += 1;
+        self.say(format!("monitor state: {motion}"));
+    }
+
     fn leave_command(&mut self) {
         self.commands = false;
         self.commanded = self.hold;
@@ -308,8 +332,8 @@ impl Krc {
         };
         let none = JointVector::zeros();
         let (torque, stiffness, ratio) = if self.scheme == ControlScheme::Position {
-            let stiffness = JointVector::repeat(self.options.position_stiffness);
-            (none, stiffness, JointVector::repeat(1.0))
+            let [stiffness, ratio] = self.position_springs();
+            (none, stiffness, ratio)
         } else {
             let [stiffness, ratio] = self.own_springs();
             (
@@ -327,6 +351,11 @@ impl Krc {
     /// Stiffness \[Nm/rad\] and damping ratio where no order says otherwise.
     fn own_springs(&self) -> [JointVector<f64>; 2] {
         [self.options.stiffness, self.options.damping].map(JointVector::repeat)
+    }
+
+    /// The same of the position scheme.
+    fn position_springs(&self) -> [JointVector<f64>; 2] {
+        [self.options.position_stiffness, 1.0].map(JointVector::repeat)
     }
 
     /// Springs K to the commanded position, which moves evenly during the cycle.

@@ -15,9 +15,9 @@ impl Robot {
             measurement: MeasurementKind::Fri,
             dead_cycles: setup.plant_options.dead_cycles,
         };
-        let (metrics, stop) = (&self.metrics, self.stop.as_ref());
-        let mut summary = Summary::of(&setup.scenario, &conditions, setup.seed, metrics, stop);
-        if self.ended_in_monitor && stop.is_none() {
+        let (metrics, ending) = (&self.metrics, &self.ending);
+        let mut summary = Summary::of(&setup.scenario, &conditions, setup.seed, metrics, ending);
+        if self.ended_in_monitor && !ending.has_begun() {
             let lost = "not in command state at the end".to_string();
             summary.verdict = Verdict::Fail;
             summary.reason = Some(match summary.reason {
