@@ -226,8 +226,8 @@ fn a_fault_is_not_lost_over_the_link() {
 /// makes of it, and over FRI the robot itself ends the motion.
 #[test]
 fn an_unsafe_speed_is_braked_on_either_side_of_the_link() {
-    // Half a metre away at once: the torque of all joints is at its limit.
-    let far = "kind = 'move'\nby_m = [0.0, 0.5, 0.0]\nduration_s = 0.001";
+    // Half a metre in a tenth of a second: the torque of all joints is at its limit.
+    let far = "kind = 'move'\nby_m = [0.0, 0.5, 0.0]\nduration_s = 0.1";
     let own = scenario(BENT, "position", far, "");
     for measurement in ["direct", "fri"] {
         let said = run(&own, &format!("--measurement {measurement}"));
@@ -247,17 +247,22 @@ fn an_unsafe_speed_is_braked_on_either_side_of_the_link() {
 }
 
 #[test]
-fn a_reference_that_jumps_steps_the_torque_and_table_and_report_say_so() {
+fn a_reference_that_steps_the_torque_is_in_table_and_report() {
     let jump = "kind = 'move'\nby_m = [0.0, 0.1, 0.0]\nduration_s = 0.001";
     let said = run(&scenario(BENT, "position", jump, ""), "--duration 0.5");
+    // What jumps is joined.
+    assert!(said.summary["torque"]["step"].is_null(), "{}", said.text);
+
+    let fast = "kind = 'move'\nby_m = [0.0, 0.2, 0.0]\nduration_s = 0.1";
+    let said = run(&scenario(BENT, "position", fast, ""), "--duration 0.5");
     let step = &said.summary["torque"]["step"];
     // 10 kNm/s of the LWR allow 20 Nm in 2 ms: the bound is half of that, and the core's own
-    // limit the largest step. The jump lies between the first two cycles.
+    // limit the largest step.
     assert_eq!(step["bound_nm"], 10.0);
     let nm = step["step_nm"].as_f64().expect("a step");
     // Rounding of a difference of torques up to 176 Nm.
     assert!(nm > 10.0 && nm <= 20.0 + 1e-12, "{step}");
-    assert!(step["t_s"].as_f64() < Some(0.02), "{step}");
+    assert!(step["t_s"].as_f64() < Some(0.12), "{step}");
     let joint = step["joint"].as_u64().expect("a joint");
     let line = format!("the torque of joint {joint} stepped by {nm:.2} Nm in the cycle at ");
     assert!(said.text.contains(&line), "{}", said.text);

@@ -116,7 +116,8 @@ fn the_trace_holds_what_the_summary_says() {
     let text = String::from_utf8(trace).expect("plain text");
     let mut lines = text.lines();
     let header: Vec<_> = lines.next().expect("header").split(',').collect();
-    assert_eq!(header.len(), 1 + 5 * 7 + 3 + 3 + 1);
+    // t; joint vectors; position, reference and error of the level's point; flags and mode.
+    assert_eq!(header.len(), 1 + 5 * 7 + 3 + 3 + 2);
     let column = |name: &str| {
         header
             .iter()
