@@ -160,6 +160,56 @@ fn every_pointer_of_every_function_is_checked() {
     }
 }
 
+/// A state begins in a posture that a cycle would believe, or not at all.
+#[test]
+fn a_posture_that_the_arm_cannot_have_is_refused() {
+    let bench = &mut Bench::new();
+    let (c, s): (*const StratumController, *mut StratumState) =
+        (&*bench.controller, &mut *bench.state);
+    let mut far = Q;
+    far[3] = 35.0;
+    // SAFETY: see `Bench::new`.
+    unsafe {
+        let refused = fault(FaultKind::Implausible);
+        assert_eq!(stratum_reference_hold(s, c, far.as_ptr()), refused);
+        let mut torque = ZERO;
+        let (q, zero, t) = (Q.as_ptr(), ZERO.as_ptr(), torque.as_mut_ptr());
+        assert_eq!(stratum_step(c, s, q, zero, 0.002, t), STRATUM_OK);
+        assert_eq!(stratum_state_init(s, c, far.as_ptr()), refused);
+    }
+}
+
+/// A reference elsewhere is joined, flagged, and followed at once where that is asked for.
+#[test]
+fn a_reference_that_jumps_is_joined_unless_told_otherwise() {
+    let torque = |at_once: bool| {
+        let bench = &mut Bench::new();
+        let (c, s): (*const StratumController, *mut StratumState) =
+            (&*bench.controller, &mut *bench.state);
+        // SAFETY: see `Bench::new`.
+        unsafe {
+            let mut reference = StratumReference::default();
+            assert_eq!(stratum_reference_get(s, 1, &raw mut reference), STRATUM_OK);
+            reference.x[1] += 0.1;
+            assert_eq!(stratum_reference_set(s, 1, &reference), STRATUM_OK);
+            if at_once {
+                assert_eq!(stratum_follow_at_once(s), STRATUM_OK);
+            }
+            let mut torque = ZERO;
+            let (q, zero, t) = (Q.as_ptr(), ZERO.as_ptr(), torque.as_mut_ptr());
+            assert_eq!(stratum_step(c, s, q, zero, 0.002, t), STRATUM_OK);
+            let mut status = StratumStatus::default();
+            assert_eq!(stratum_status(s, &raw mut status), STRATUM_OK);
+            assert_eq!(status.joining, u32::from(!at_once));
+            torque
+        }
+    };
+    let (joined, at_once) = (torque(false), torque(true));
+    let step = joined.iter().zip(at_once).map(|(a, b)| (a - b).abs());
+    // K_p of 400 /s2 times 0.1 m on some kilograms at a lever of some decimetres.
+    assert!(step.fold(0.0, f64::max) > 5.0, "{joined:?} {at_once:?}");
+}
+
 #[test]
 fn numbers_that_are_not_finite_change_nothing() {
     let bench = &mut Bench::new();

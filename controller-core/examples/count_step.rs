@@ -2,7 +2,7 @@
 //! under callgrind, which counts each call of a function in `cases::stages` by itself.
 //!
 //! `count_step step` runs whole cycles in random and adversarial states (`quick`: a
-//! few), `count_step stages` every stage alone, `count_step resolver` the velocity-level
+//! few) and cycles in which every reference jumps, `count_step stages` every stage alone, `count_step resolver` the velocity-level
 //! resolver in the states of `step`. The order of the calls is printed, one name per line.
 
 #![cfg(not(target_os = "none"))]
@@ -18,7 +18,7 @@ use controller_core::cycle::record::Recorder;
 use controller_core::cycle::{self, Data};
 use controller_core::real::Real;
 use controller_core::resolver::ResolverState;
-use controller_core::{Controller, State};
+use controller_core::{Controller, State, Target};
 
 /// Whole cycles: each state is preceded by one that is not counted apart, so that
 /// the observer runs. A cycle must not end in a fault: that is another path.
@@ -46,6 +46,34 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
             "fault"
         };
         println!("{} {kind}", case.name);
+        black_box(step);
+    }
+}
+
+/// The most that a reference adds: every level and the posture jump in one cycle.
+fn joins<T: Real>(case: &Case<T>, inputs: &[Input]) {
+    let mut recorder = Recorder::new();
+    for input in inputs {
+        let (measurement, _) = case.typed(input);
+        let mut state = State::new();
+        let mut reference = case.controller.rest_reference(&measurement.q);
+        let _ = case.controller.step(&mut state, &measurement, &reference);
+        for target in reference.targets_mut() {
+            if let Target::Position { x, .. } = target {
+                x.add_scalar_mut(T::from_f64(0.1));
+            }
+        }
+        reference.posture.add_scalar_mut(T::from_f64(0.3));
+        let step = step(
+            black_box(&case.controller),
+            black_box(&mut state),
+            black_box(&mut recorder),
+            black_box(&measurement),
+            black_box(&reference),
+        );
+        let joining = step.status.joining.0.count_ones() as usize;
+        let all = joining == case.controller.level_count() + 1;
+        println!("{} {}", case.name, if all { "joining" } else { "fault" });
         black_box(step);
     }
 }
@@ -112,5 +140,10 @@ fn main() {
         steps(&levels::<f64>(3), &inputs);
         steps(&levels::<f32>(2), &inputs);
         steps(&levels::<f32>(3), &inputs);
+        let some = &inputs[..16];
+        joins(&levels::<f64>(2), some);
+        joins(&levels::<f64>(3), some);
+        joins(&levels::<f32>(2), some);
+        joins(&levels::<f32>(3), some);
     }
 }
