@@ -226,9 +226,9 @@ static void steps(void) {
     EXPECT(STRATUM_FAULT_IMPLAUSIBLE, stratum_step(&controller, &state, q, dq, bad[0], torque));
     EXPECT(STRATUM_OK, stratum_reset(&state));
     StratumReference far = reference;
-    far.x[0] = stratum_precision() == 64 ? 1e308 : 3e38; /* finite, but not times 400 */
+    far.x[0] = stratum_precision() == 64 ? 1e308 : 3e38; /* finite, and no place */
     EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &far));
-    EXPECT(STRATUM_FAULT_NON_FINITE_TORQUE,
+    EXPECT(STRATUM_FAULT_IMPLAUSIBLE,
            stratum_step(&controller, &state, q, dq, 0.002, torque));
     EXPECT(STRATUM_OK, stratum_reference_set(&state, 1, &reference));
     EXPECT(STRATUM_OK, stratum_reset(&state));

@@ -69,7 +69,9 @@ pub struct Data<T: Real> {
 
 impl<T: Real> Data<T> {
     /// Nothing computed, nothing remembered.
+    // In the place of the result: a copy on the stack is larger than what a cycle needs.
     #[must_use]
+    #[inline(always)]
     pub const fn new() -> Self {
         Self {
             joints: JointState {
@@ -136,6 +138,7 @@ pub struct State<T: Real> {
 impl<T: Real> State<T> {
     /// Before the first cycle: nothing observed, no fault, zero torque held.
     #[must_use]
+    #[inline(always)]
     pub const fn new() -> Self {
         Self {
             data: Data::new(),
