@@ -19,6 +19,7 @@
 use crate::arm::kinematics::Kinematics;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::cycle::Input;
+use crate::cycle::config::check_cycle;
 use crate::cycle::measurement::{Measurement, within};
 use crate::cycle::usable::admit;
 use crate::error::ConfigError;
@@ -26,7 +27,7 @@ use crate::fault::{Fault, IndexSet, Limits, Mode, Quantity, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::hierarchy::Hierarchy;
 use crate::linalg::Cholesky;
-use crate::ranges::{COMMAND_LEAD_MAX, CYCLE_RANGE_S, GAIN_MAX, RESOLVER_GAIN_BOUND};
+use crate::ranges::{COMMAND_LEAD_MAX, GAIN_MAX, RESOLVER_GAIN_BOUND};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 use crate::task::{Followed, Levels, Reference, TaskSet};
@@ -136,10 +137,7 @@ impl<T: Real> Resolver<T> {
             gain,
             cycle_s,
         } = config;
-        let [min, max] = CYCLE_RANGE_S;
-        if !(cycle_s >= min && cycle_s <= max) {
-            return Err(ConfigError::Cycle { value: cycle_s });
-        }
+        check_cycle(cycle_s)?;
         let bound = RESOLVER_GAIN_BOUND / cycle_s;
         if !(gain > 0.0 && gain <= bound) {
             return Err(ConfigError::ResolverGain { value: gain, bound });

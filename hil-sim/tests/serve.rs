@@ -162,6 +162,15 @@ fn bridge(socket: &UdpSocket, duration_s: f64, stop: &AtomicBool) {
     }
 }
 
+/// A client's socket that does not wait for long, and its port.
+fn client() -> (UdpSocket, u16) {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let timeout = Duration::from_millis(20);
+    socket.set_read_timeout(Some(timeout)).expect("a timeout");
+    let port = socket.local_addr().expect("an address").port();
+    (socket, port)
+}
+
 /// Over a socket or from hand to hand: the same motion to the last bit.
 #[test]
 fn lockstep_over_a_socket_is_the_run_in_one_process() {
@@ -173,10 +182,7 @@ fn lockstep_over_a_socket_is_the_run_in_one_process() {
         .expect("the program runs");
     let text = String::from_utf8_lossy(&run.stderr).to_string();
     assert_eq!(run.status.code(), Some(0), "{text}");
-    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
-    let timeout = Duration::from_millis(20);
-    socket.set_read_timeout(Some(timeout)).expect("a timeout");
-    let port = socket.local_addr().expect("an address").port();
+    let (socket, port) = client();
     let stop = AtomicBool::new(false);
     let output = thread::scope(|scope| {
         scope.spawn(|| bridge(&socket, 5.0, &stop));
@@ -267,10 +273,7 @@ fn without_client_the_exit_code_is_four() {
 #[test]
 fn datagrams_that_are_no_answers_are_told() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
-    let timeout = Duration::from_millis(20);
-    socket.set_read_timeout(Some(timeout)).expect("a timeout");
-    let port = socket.local_addr().expect("an address").port();
+    let (socket, port) = client();
     let stop = AtomicBool::new(false);
     let output = thread::scope(|scope| {
         scope.spawn(|| {

@@ -28,17 +28,23 @@ pub struct ControllerConfig {
     pub dead_cycles: u8,
 }
 
+/// Whether a nominal cycle \[s\] makes sense, of a controller or of a resolver.
+pub(crate) fn check_cycle(cycle_s: f64) -> Result<(), ConfigError> {
+    let [min, max] = CYCLE_RANGE_S;
+    if cycle_s >= min && cycle_s <= max {
+        Ok(())
+    } else {
+        Err(ConfigError::Cycle { value: cycle_s })
+    }
+}
+
 impl ControllerConfig {
     /// Checks everything and returns the fastest null-space mode.
     ///
     /// # Errors
     /// The first thing that cannot be, with its value and what is allowed.
     pub fn validate<T: Real>(&self, arm: &ArmModel<T>) -> Result<DampingRate, ConfigError> {
-        let [min, max] = CYCLE_RANGE_S;
-        if !(self.cycle_s >= min && self.cycle_s <= max) {
-            let value = self.cycle_s;
-            return Err(ConfigError::Cycle { value });
-        }
+        check_cycle(self.cycle_s)?;
         if self.dead_cycles > DEAD_CYCLES_MAX {
             return Err(ConfigError::DeadCycles {
                 value: self.dead_cycles,

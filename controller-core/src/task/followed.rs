@@ -8,10 +8,11 @@
 //!     +----------------------------------------> holding                  +
 //! ```
 //!
-//! A target jumps where |x_d(k) - x_d(k-1) - h dx_d(k)| is above [`JUMP`]. What is followed then leaves the motion until now, which goes on
-//! as it was, for the wanted one: their difference dies out in max([`JOIN_S`], distance /
-//! [`JOIN_SPEED`]) ([`Decay`]), with neither a step of the velocity nor one of the
-//! acceleration. Before the first target the motion until now is that of the arm.
+//! A target jumps where |x_d(k) - x_d(k-1) - h dx_d(k)| is above [`JUMP`]. What is followed
+//! then leaves the motion until now, which goes on as it was, for the wanted one: their
+//! difference dies out in max([`JOIN_S`], distance / [`JOIN_SPEED`]) ([`Decay`]), with neither
+//! a step of the velocity nor one of the acceleration. Before the first target the motion
+//! until now is that of the arm.
 
 use super::decay::Decay;
 use super::orientation::{self, Quaternion};
