@@ -116,7 +116,7 @@ impl<T: Real> Kinematics<T> {
                 origin += shift;
                 velocity += spin.cross(&shift);
             }
-            (y, z) = match link.exchange.0 {
+            (y, z) = match AxisExchange::turn(link.exchange.0) {
                 AxisExchange::NONE => (turned_y, z),
                 AxisExchange::RIGHT => (z, -turned_y),
                 AxisExchange::LEFT => (-z, turned_y),

@@ -217,15 +217,16 @@ mod tests {
 
     #[test]
     fn the_mass_matrix_of_the_guard_is_that_of_the_cycle() {
-        // With lengths and twists that are not those of right-angled arms too.
-        let mut skew = LWR_IV;
-        for (link, number) in skew.links.iter_mut().zip(1..) {
-            link.a += 0.02 * f64::from(number);
-            link.alpha += 0.1 * f64::from(number);
+        // With lengths too, and with twists that are not right.
+        let (mut long, mut skew) = (LWR_IV, LWR_IV);
+        for i in 0..DOF {
+            long.links[i].a = 0.02 * (1.0 + i as f64);
+            skew.links[i].a = long.links[i].a;
+            skew.links[i].alpha += 0.1 * (1.0 + i as f64);
         }
         // Entries that cancel are some ten times smaller than their terms; a few
         // dozen roundings.
-        for arm in [&LWR_IV, &skew] {
+        for arm in [&LWR_IV, &long, &skew] {
             assert!(difference::<f64>(arm) < 1e3 * f64::EPSILON);
             assert!(difference::<f32>(arm) < 1e3 * f64::from(f32::EPSILON));
         }
