@@ -1,8 +1,8 @@
 //! Transitions of the reference: what it says of velocity is how it moves, and silence or
 //! a level that holds makes no jump.
 
+use arms::LWR_IV_FLANGE;
 use bridge::guide::{Guide, GuideMode, GuideTimes};
-use controller_core::arm::LWR_IV_FLANGE;
 use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
 use controller_core::task::trajectory::{Plane, Rotation, Trajectory};

@@ -13,7 +13,8 @@ mod session;
 
 use std::path::Path;
 
-use controller_core::arm::{ArmParameters, LWR_IV};
+use arms::LWR_IV;
+use controller_core::arm::ArmParameters;
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};

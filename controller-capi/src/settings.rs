@@ -6,9 +6,8 @@
 use core::fmt;
 use core::mem::MaybeUninit;
 
-use controller_core::arm::{
-    ArmParameters, LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS, LinkParameters,
-};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS};
+use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::gain::diagonal;
 use controller_core::joint::DOF;
 use controller_core::law::null_space::{NullDamping, Posture};

@@ -10,14 +10,14 @@ pub mod dynamics;
 mod exchange;
 pub mod kinematics;
 mod link;
-mod lwr_iv;
 mod model;
 mod moments;
 mod parameters;
+#[cfg(test)]
+pub(crate) mod test_arm;
 mod transform;
 
 pub use link::{Link, LinkPoint, NamedPoint};
-pub use lwr_iv::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS};
 pub use model::ArmModel;
 pub(crate) use model::LinkModel;
 pub use parameters::{ArmError, ArmParameters, LinkParameters};

@@ -1,7 +1,7 @@
 //! Inputs of the timing table: random ones within the limits of the arm, and
 //! those that look hardest. The same numbers on host and target.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector, Vector3};
 use controller_core::ranges::{POSITION_MARGIN, SPEED_FACTOR};
 use controller_core::real::Real;

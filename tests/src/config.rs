@@ -1,11 +1,9 @@
 //! The reference configurations of the experiments.
 
-use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
+use arms::{LWR_IV_FLANGE, LWR_IV_POINTS};
 use controller_core::{Axes, ControllerConfig, LinkPoint, NullSpace, Task, TaskGains, TaskSet};
 
-pub use controller_core::arm::{
-    LWR_IV_DAMPING as REFERENCE_DAMPING, LWR_IV_STIFFNESS as REFERENCE_STIFFNESS,
-};
+pub use arms::{LWR_IV_DAMPING as REFERENCE_DAMPING, LWR_IV_STIFFNESS as REFERENCE_STIFFNESS};
 
 /// K_p = 400 /s2, K_d = 40 /s on every axis.
 pub const REFERENCE_GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);

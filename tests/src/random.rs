@@ -1,6 +1,6 @@
 //! Seeded random states of the arm.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
 use hil_sim::plant::noise::Rng;
 

@@ -1,8 +1,8 @@
 //! What happens to the arm behind a fault, and the limit on the rate of its torque, against
 //! closed forms on the ideal plant.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::LWR_IV;
 use controller_core::fault::{Fault, Mode, Quantity};
 use controller_core::joint::{JointState, JointVector, zeros};
 use controller_core::ranges::{BLIND_FADE_S, BRAKE_RATE, POSITION_MARGIN, RESTING_SPEED};

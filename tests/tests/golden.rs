@@ -1,8 +1,9 @@
 //! The core's kinematics and dynamics against Pinocchio at 200 states, both
 //! precisions.
 
+use arms::LWR_IV_POINTS;
 use controller_core::LinkPoint;
-use controller_core::arm::{ArmModel, LWR_IV_POINTS};
+use controller_core::arm::ArmModel;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::real::Real;
 use stratum_tests::golden::{Golden, GoldenArm, Worst};

@@ -1,8 +1,9 @@
 //! The plant against golden data of an independent library, against closed
 //! forms, and against what a mechanical system must do.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
 use hil_sim::plant::{Plant, PlantModel, Rng, mismatched, noise};
 use std::f64::consts::{PI, TAU};

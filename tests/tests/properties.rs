@@ -6,8 +6,8 @@ mod any_input;
 
 use std::cell::{Cell, RefCell};
 
+use arms::LWR_IV;
 use controller_core::Target;
-use controller_core::arm::LWR_IV;
 use controller_core::cycle::Data;
 use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::law::control::{Control, TorqueDemand};

@@ -1,8 +1,8 @@
 //! The velocity-level resolver against (1)-(5) in explicit inverses, on its own: the
 //! position that it commands is the one that it measures in the next cycle.
 
+use arms::LWR_IV;
 use cell::scenario::{LevelSpec, Scenario};
-use controller_core::arm::LWR_IV;
 use controller_core::fault::Quantity;
 use controller_core::joint::{JointState, JointVector, Vector3, zeros};
 use controller_core::ranges::COMMAND_LEAD_MAX;

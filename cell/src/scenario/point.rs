@@ -1,6 +1,6 @@
 //! Points of the arm in files: by name, or on any link.
 
-use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
+use arms::{LWR_IV_FLANGE, LWR_IV_POINTS};
 use controller_core::{Link, LinkPoint};
 use serde::Deserialize;
 

@@ -4,9 +4,7 @@
 
 pub mod stages;
 
-use controller_core::arm::{
-    LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS,
-};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::resolver::{Resolver, ResolverConfig};

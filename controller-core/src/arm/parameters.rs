@@ -203,21 +203,22 @@ fn smallest_minor(m: &nalgebra::Matrix3<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::{ArmModel, LWR_IV};
+    use crate::arm::ArmModel;
+    use crate::arm::test_arm::RODS;
 
     extern crate std;
     use std::string::ToString;
 
     #[test]
-    fn the_lwr_is_a_model_in_both_precisions() {
-        assert!(ArmModel::<f64>::new(&LWR_IV).is_ok());
-        assert!(ArmModel::<f32>::new(&LWR_IV).is_ok());
+    fn the_rods_are_a_model_in_both_precisions() {
+        assert!(ArmModel::<f64>::new(&RODS).is_ok());
+        assert!(ArmModel::<f32>::new(&RODS).is_ok());
     }
 
     #[test]
     fn each_impossible_table_is_named() {
         let error = |change: fn(&mut ArmParameters)| {
-            let mut arm = LWR_IV;
+            let mut arm = RODS;
             change(&mut arm);
             ArmModel::<f64>::new(&arm).unwrap_err().to_string()
         };

@@ -181,9 +181,10 @@ fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, us
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::ArmParameters;
     use crate::arm::dynamics::Dynamics;
     use crate::arm::kinematics::Kinematics;
-    use crate::arm::{ArmParameters, LWR_IV};
+    use crate::arm::test_arm::RODS;
     use crate::joint::{JointState, JointVector};
 
     /// Largest difference from the mass matrix of the cycle, relative to its size.
@@ -218,7 +219,7 @@ mod tests {
     #[test]
     fn the_mass_matrix_of_the_guard_is_that_of_the_cycle() {
         // With lengths too, and with twists that are not right.
-        let (mut long, mut skew) = (LWR_IV, LWR_IV);
+        let (mut long, mut skew) = (RODS, RODS);
         for i in 0..DOF {
             long.links[i].a = 0.02 * (1.0 + i as f64);
             skew.links[i].a = long.links[i].a;
@@ -226,7 +227,7 @@ mod tests {
         }
         // Entries that cancel are some ten times smaller than their terms; a few
         // dozen roundings.
-        for arm in [&LWR_IV, &long, &skew] {
+        for arm in [&RODS, &long, &skew] {
             assert!(difference::<f64>(arm) < 1e3 * f64::EPSILON);
             assert!(difference::<f32>(arm) < 1e3 * f64::from(f32::EPSILON));
         }

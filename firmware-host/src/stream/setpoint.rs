@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use arms::LWR_IV_POINTS;
 use cell::ranges::{QUATERNION_NORM, Range};
-use controller_core::arm::LWR_IV_POINTS;
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
 use controller_core::task::Tracked;
@@ -206,7 +206,7 @@ impl fmt::Display for Level<'_> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+    use arms::{LWR_IV, LWR_IV_FLANGE};
     use controller_core::{Axes, Link, LinkPoint, TaskGains};
 
     const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);

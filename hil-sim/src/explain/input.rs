@@ -1,6 +1,7 @@
 //! The state to explain, as JSON.
 
-use controller_core::arm::{ArmParameters, LWR_IV};
+use arms::LWR_IV;
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, Vector3};
 use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;

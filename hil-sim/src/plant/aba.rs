@@ -225,7 +225,7 @@ impl Wrench {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
     use controller_core::joint::JointState;
 
     /// Two unit point masses on massless unit links with parallel axes, the

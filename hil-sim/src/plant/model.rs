@@ -247,7 +247,7 @@ impl PlantModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     #[test]
     fn the_upright_arm_reaches_straight_up() {

@@ -1,7 +1,8 @@
 //! A controller of either precision around the ideal plant.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::arm::ArmParameters;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::real::Real;

@@ -1,7 +1,7 @@
 //! Errata that show when the loop is closed around the ideal plant.
 
+use arms::LWR_IV;
 use controller_core::Controller;
-use controller_core::arm::LWR_IV;
 use controller_core::cycle::observer::Observer;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};

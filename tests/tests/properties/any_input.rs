@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::fault::{FaultKind, Mode};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;

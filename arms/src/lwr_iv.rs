@@ -11,13 +11,13 @@
 //! Only M(q), C(q, dq) and g(q) are meaningful: single masses and centres of
 //! mass are not identified (27 free directions). There is no rotor inertia and
 //! no joint elasticity. M77 = 1.584e-4 kg m2, which bounds the damping of
-//! joint 7 (see [`crate::law::sampling`]).
+//! joint 7 (see [`controller_core::law::sampling`]).
 
 use core::f64::consts::FRAC_PI_2;
 
-use crate::joint::DOF;
+use controller_core::joint::DOF;
 
-use super::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint};
+use controller_core::arm::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint};
 
 /// Points of the arm that tasks and contacts name. The elbow is 0.4 m from the
 /// shoulder, `upper` 0.25 m along the upper arm, `forearm` 0.2 m along the
