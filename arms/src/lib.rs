@@ -6,7 +6,7 @@
 
 pub mod lwr_iv;
 
-pub use lwr_iv::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS};
+pub use lwr_iv::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 
 use controller_core::arm::ArmParameters;
 

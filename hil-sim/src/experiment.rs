@@ -146,7 +146,7 @@ impl Experiment {
             self.seed,
             driver.plant_options(self.options),
         );
-        let limits = controller.arm().position_limit();
+        let limits = controller.arm().position_range();
         let mut metrics = Metrics::new(scenario.levels.len(), &contacts.intervals(), limits);
         let mut stop = None;
         let mut watch: Option<Watch> = None;

@@ -139,20 +139,20 @@ pub struct JointFigures {
 pub struct Beyond {
     /// The joint, from 1.
     pub joint: usize,
-    /// The position farthest from the middle \[rad\].
+    /// The position farthest outside its range \[rad\].
     pub reached: f64,
-    /// What it may be, to either side \[rad\].
-    pub limit: f64,
+    /// What it may be \[rad\].
+    pub range: [f64; 2],
 }
 
 impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (joint, reached) = (self.joint, self.reached.to_degrees());
         // Back from radians to the number of the data sheet.
-        let limit = (self.limit.to_degrees() * 1e9).round() / 1e9;
+        let [min, max] = self.range.map(|end| (end.to_degrees() * 1e9).round() / 1e9);
         write!(
             f,
-            "joint {joint} reached {reached:.4} deg, its range is -{limit} to {limit}"
+            "joint {joint} reached {reached:.4} deg, its range is {min} to {max}"
         )
     }
 }
@@ -219,7 +219,7 @@ pub struct Metrics {
     max_torque: [f64; DOF],
     lowest: [f64; DOF],
     highest: [f64; DOF],
-    position_limit: JointVector<f64>,
+    position_range: [JointVector<f64>; 2],
     first: JointVector<f64>,
     last: JointVector<f64>,
     /// Largest force of a hand \[N\].
@@ -231,9 +231,13 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// No cycle yet. `position_limit` \[rad\] is where a joint counts as beyond its range.
+    /// No cycle yet. Outside `position_range` \[rad\] a joint counts as beyond its range.
     #[must_use]
-    pub fn new(levels: usize, contacts: &[Interval], position_limit: &JointVector<f64>) -> Self {
+    pub fn new(
+        levels: usize,
+        contacts: &[Interval],
+        position_range: &[JointVector<f64>; 2],
+    ) -> Self {
         let sums = LevelSums {
             plateaus: vec![Mean::default(); contacts.len()],
             ..LevelSums::default()
@@ -246,7 +250,7 @@ impl Metrics {
             max_torque: [0.0; DOF],
             lowest: [f64::INFINITY; DOF],
             highest: [f64::NEG_INFINITY; DOF],
-            position_limit: *position_limit,
+            position_range: *position_range,
             first: JointVector::zeros(),
             last: JointVector::zeros(),
             hand_force: 0.0,
@@ -295,7 +299,7 @@ impl Metrics {
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
             self.lowest[joint] = self.lowest[joint].min(q);
             self.highest[joint] = self.highest[joint].max(q);
-            beyond |= q.abs() > self.position_limit[joint] + ROUNDING_RAD;
+            beyond |= self.excess(joint, q) > ROUNDING_RAD;
         }
         self.limits.position += usize::from(beyond);
         self.limits.torque += usize::from(sample.saturated);
@@ -353,16 +357,21 @@ impl Metrics {
     pub fn beyond(&self) -> impl Iterator<Item = Beyond> {
         (0..DOF).filter_map(|index| {
             let (lowest, highest) = (self.lowest[index], self.highest[index]);
-            let reached = if -lowest > highest { lowest } else { highest };
-            let limit = self.position_limit[index];
-            let joint = index + 1;
-            let is_beyond = reached.abs() > limit + ROUNDING_RAD && self.cycles > 0;
+            let [low, high] = [lowest, highest].map(|q| self.excess(index, q));
+            let reached = if low > high { lowest } else { highest };
+            let is_beyond = low.max(high) > ROUNDING_RAD && self.cycles > 0;
             is_beyond.then_some(Beyond {
-                joint,
+                joint: index + 1,
                 reached,
-                limit,
+                range: self.position_range.map(|end| end[index]),
             })
         })
+    }
+
+    /// How far `q` \[rad\] of a joint is outside its range; negative inside.
+    fn excess(&self, index: usize, q: f64) -> f64 {
+        let [least, greatest] = self.position_range.map(|end| end[index]);
+        (least - q).max(q - greatest)
     }
 
     /// Torque figures.

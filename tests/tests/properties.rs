@@ -62,7 +62,7 @@ fn states(
         .prop_map(|(split, q, dq, aligned, decades, seed)| {
             let links = &LWR_IV.links;
             let mut state = JointState {
-                q: JointVector::from_fn(|i, _| q[i] * links[i].position_limit),
+                q: JointVector::from_fn(|i, _| q[i] * links[i].position_range[1]),
                 dq: JointVector::from_fn(|i, _| dq[i] * links[i].speed_limit),
             };
             for (bit, joint) in [1, 3, 5].into_iter().enumerate() {

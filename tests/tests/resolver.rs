@@ -276,7 +276,7 @@ fn commands_stay_within_speed_range_and_reach_of_the_arm() {
         limited |= step.status.saturated.any();
         for (i, link) in LWR_IV.links.iter().enumerate() {
             assert!(step.dq[i].abs() <= link.speed_limit * (1.0 + 1e-15));
-            assert!(step.q[i].abs() <= link.position_limit);
+            assert!(step.q[i].abs() <= link.position_range[1]);
             assert!((step.q[i] - q[i]).abs() <= COMMAND_LEAD_MAX * (1.0 + 1e-12));
         }
         if cycle < 2000 {

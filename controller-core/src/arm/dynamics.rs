@@ -20,7 +20,7 @@ use crate::real::Real;
 /// Everything of the equation of motion (6) that depends on q and dq.
 #[derive(Clone, Copy, Debug)]
 pub struct Dynamics<T: Real> {
-    /// M(q) \[kg m2\], symmetric, positive definite.
+    /// M(q) \[kg m2\], rotors included, symmetric, positive definite.
     pub mass_matrix: JointMatrix<T>,
     /// C(q, dq) \[Nms/rad\], Christoffel form.
     pub coriolis_matrix: JointMatrix<T>,
@@ -91,7 +91,7 @@ impl<T: Real> Dynamics<T> {
             gravity[i] = gx * group.first[1] - gy * group.first[0];
 
             let mut wrench = JointWrench::new(&group, &AxisRate::new(&motion[i]));
-            mass_matrix[(i, i)] = wrench.rows[2][0];
+            mass_matrix[(i, i)] = wrench.rows[2][0] + arm.rotor_inertia[i];
             coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
                 wrench = wrench.in_parent(&transform(j + 1));

@@ -31,7 +31,7 @@ pub struct Kinematics<T: Real> {
     pub angular_velocity: [Vector3<T>; FRAMES],
     /// Velocity of the origin of frame i, carried by link i \[m/s\].
     pub origin_velocity: [Vector3<T>; FRAMES],
-    /// Sine and cosine of q, for the dynamics.
+    /// Sine and cosine of the DH angles, for the dynamics.
     pub(crate) sine: JointVector<T>,
     pub(crate) cosine: JointVector<T>,
 }
@@ -87,20 +87,17 @@ impl<T: Real> Kinematics<T> {
     pub fn update(&mut self, arm: &ArmModel<T>, joints: &JointState<T>) {
         let zero = Vector3::from([T::ZERO; 3]);
         let k = self;
-        (k.sine, k.cosine) = sines_cosines(&joints.q);
-        k.rotation[0] = Matrix3::identity();
-        k.origin[0] = Vector3::from([T::ZERO, T::ZERO, arm.base_height]);
-        let [mut x, mut y, mut z] = [
-            [T::ONE, T::ZERO, T::ZERO],
-            [T::ZERO, T::ONE, T::ZERO],
-            [T::ZERO, T::ZERO, T::ONE],
-        ]
-        .map(Vector3::from);
+        (k.sine, k.cosine) = sines_cosines(&joints.q, &arm.zero_angle);
+        k.rotation[0] = arm.base_rotation;
+        k.origin[0] = arm.base_shift;
+        let [mut x, mut y, mut z] =
+            [0, 1, 2].map(|axis| arm.base_rotation.column(axis).into_owned());
         let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
         for_each_joint!(i, {
             let link = &arm.links[i];
             let (sin, cos) = (k.sine[i], k.cosine[i]);
-            let axis_rate = spin.cross(&z);
+            // The base does not turn.
+            let axis_rate = if i == 0 { zero } else { spin.cross(&z) };
             for row in 0..3 {
                 k.axis[row][i] = z[row];
                 k.axis_rate[row][i] = axis_rate[row];

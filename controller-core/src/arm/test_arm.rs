@@ -4,21 +4,26 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::{ArmParameters, LinkParameters};
+use super::{ArmParameters, Friction, LinkParameters, Pose};
 
 /// A rod of 0.2 m and 2 kg, its middle 0.1 m along y, that is displaced by `a` and `d`
-/// \[m\] and twisted by `alpha` \[rad\].
+/// \[m\] and twisted by `alpha` \[rad\]; its joint has a rotor and an offset of 0.2 rad.
 const fn rod(a: f64, alpha: f64, d: f64) -> LinkParameters {
     LinkParameters {
+        name: "joint",
         a,
         alpha,
         d,
+        angle_offset: 0.2,
         mass: 2.0,
         com: [0.01, 0.1, -0.02],
         // m l2 / 12 across, a radius of 20 mm about its own axis.
         inertia: [0.0067, 0.0, 0.0, 0.0004, 0.0, 0.0067],
-        position_limit: 2.5,
+        rotor_inertia: 0.01,
+        friction: Friction::NONE,
+        position_range: [-2.5, 2.0],
         speed_limit: 2.0,
+        end_approach: None,
         torque_limit: 100.0,
         torque_rate_limit: 1e4,
         brake_rate_limit: 1e5,
@@ -28,8 +33,7 @@ const fn rod(a: f64, alpha: f64, d: f64) -> LinkParameters {
 /// Seven rods.
 pub(crate) const RODS: ArmParameters = ArmParameters {
     name: "rods",
-    base_height: 0.3,
-    flange: 0.1,
+    base: Pose::at([0.0, 0.0, 0.3]),
     gravity: [0.0, 0.0, -9.81],
     links: [
         rod(0.0, FRAC_PI_2, 0.0),
@@ -40,4 +44,6 @@ pub(crate) const RODS: ArmParameters = ArmParameters {
         rod(0.08, -FRAC_PI_2, 0.0),
         rod(0.0, 0.0, 0.0),
     ],
+    flange: Pose::at([0.0, 0.0, 0.1]),
+    points: &[],
 };

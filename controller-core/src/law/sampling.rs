@@ -117,19 +117,20 @@ fn set_mass_matrix<T: Real>(
     mass_matrix: &mut JointMatrix<T>,
 ) {
     let mut group = Matrix4::zeros();
+    let angle = |i: usize| T::from_f64(posture[i]) - arm.zero_angle[i];
     for i in (0..DOF).rev() {
         let [x, y, z, one] = &arm.links[i].moments;
         group += Matrix4::from_columns(&[*x, *y, *z, *one]);
         let mut velocity_moment = Matrix4::zeros();
         velocity_moment.set_column(0, &-group.column(1));
         velocity_moment.set_column(1, &group.column(0));
-        mass_matrix[(i, i)] = velocity_moment.m12 - velocity_moment.m21;
+        mass_matrix[(i, i)] = velocity_moment.m12 - velocity_moment.m21 + arm.rotor_inertia[i];
         for j in (0..i).rev() {
-            velocity_moment = in_parent(&arm.links[j], posture[j + 1], &velocity_moment);
+            velocity_moment = in_parent(&arm.links[j], angle(j + 1), &velocity_moment);
             mass_matrix[(i, j)] = velocity_moment.m12 - velocity_moment.m21;
         }
         if i > 0 {
-            group = in_parent(&arm.links[i - 1], posture[i], &group);
+            group = in_parent(&arm.links[i - 1], angle(i), &group);
         }
     }
 }
@@ -137,8 +138,8 @@ fn set_mass_matrix<T: Real>(
 /// A X A^T with A from the frame of a joint to that of the joint before it: turned
 /// about z by its `angle` \[rad\], then the twist and lengths of the `link` between.
 #[inline(never)]
-fn in_parent<T: Real>(link: &LinkModel<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
-    let (sine, cosine) = T::from_f64(angle).sine_cosine();
+fn in_parent<T: Real>(link: &LinkModel<T>, angle: T, x: &Matrix4<T>) -> Matrix4<T> {
+    let (sine, cosine) = angle.sine_cosine();
     let (zero, one) = (T::ZERO, T::ONE);
     let (sin_alpha, cos_alpha) = (link.sin_alpha, link.cos_alpha);
     let transform = Matrix4::new(

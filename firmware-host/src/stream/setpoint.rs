@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use arms::LWR_IV_POINTS;
+use arms::LWR_IV;
 use cell::ranges::{QUATERNION_NORM, Range};
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
@@ -193,7 +193,7 @@ impl fmt::Display for Level<'_> {
         write!(f, "level {} ", self.number)?;
         match &self.task.tracked {
             Tracked::Position(point) => {
-                match LWR_IV_POINTS.iter().find(|named| named.point == *point) {
+                match LWR_IV.points.iter().find(|named| named.point == *point) {
                     Some(named) => write!(f, "(position of {})", named.name),
                     None => write!(f, "(position of a point of link {})", point.link.number()),
                 }

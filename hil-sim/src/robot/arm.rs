@@ -121,7 +121,7 @@ impl Robot {
             metrics: Metrics::new(
                 scenario.levels.len(),
                 &contacts.intervals(),
-                &limit(|link| link.position_limit),
+                &[0, 1].map(|end| JointVector::from_fn(|i, _| arm.links[i].position_range[end])),
             ),
             contacts,
             typed: Vec::new(),

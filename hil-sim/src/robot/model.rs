@@ -30,7 +30,7 @@ impl RobotModel {
         Self {
             weightless: arm.weightless(),
             arm,
-            flange: Vector3::new(0.0, 0.0, parameters.flange),
+            flange: parameters.flange.shift.into(),
         }
     }
 
