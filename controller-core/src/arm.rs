@@ -17,6 +17,7 @@ mod parameters;
 mod pose;
 #[cfg(test)]
 pub(crate) mod test_arm;
+mod tool;
 mod transform;
 
 pub use check::ArmError;
@@ -25,3 +26,4 @@ pub use model::ArmModel;
 pub(crate) use model::LinkModel;
 pub use parameters::{ArmParameters, EndApproach, Friction, LinkParameters};
 pub use pose::Pose;
+pub use tool::Tool;
