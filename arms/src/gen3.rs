@@ -264,4 +264,5 @@ pub const GEN3: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &[],
 };

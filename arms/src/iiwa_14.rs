@@ -189,4 +189,5 @@ pub const IIWA_14: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &[],
 };

@@ -182,4 +182,5 @@ pub const IIWA_7: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &[],
 };

@@ -42,6 +42,38 @@ const TORQUE_RATE: f64 = 10e3;
 /// A limit of 176 Nm within two milliseconds \[Nm/s\].
 const BRAKE_RATE: f64 = 100e3;
 
+/// Postures \[deg\] at which a null-space damping is checked: the worst one found for the
+/// reference damping, for the damping of each single joint and for equal
+/// damping of all, then folded and wrist-aligned ones for damping matrices of
+/// other shapes. The first joint has no influence. `tests/tests/damping.rs`
+/// confirms on random postures that none is worse.
+const DAMPING_POSTURES_DEG: [[f64; DOF]; 12] = [
+    [0.0, 0.03, -6.85, -0.91, 1.38, 1.99, -2.53],
+    [0.0, 0.01, 0.72, 0.1, -0.3, -2.72, -2.35],
+    [0.0, 0.03, 0.0, 0.11, -0.29, -2.77, -2.31],
+    [0.0, 0.03, -7.87, -0.76, 3.01, -0.72, -170.0],
+    [0.0, 2.71, 1.91, 0.09, -0.54, -1.36, -2.83],
+    [0.0, -0.04, -7.19, -0.35, -4.01, 1.2, 32.66],
+    [0.0, 2.77, 1.94, 0.2, -0.28, -2.46, -0.05],
+    [0.0, -0.12, 2.3, 0.59, -3.15, 0.14, 6.17],
+    [0.0; DOF],
+    [0.0, 60.0, 0.0, 120.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0, -90.0, 0.0, 90.0, 0.0],
+    [0.0, 90.0, 90.0, 90.0, 90.0, 0.0, 90.0],
+];
+
+/// The same in \[rad\].
+const DAMPING_POSTURES: [[f64; DOF]; 12] = {
+    let mut postures = DAMPING_POSTURES_DEG;
+    let mut n = 0;
+    while n < postures.len() * DOF {
+        let angle = &mut postures[n / DOF][n % DOF];
+        *angle = angle.to_radians();
+        n += 1;
+    }
+    postures
+};
+
 /// Points of the arm that tasks and contacts name. The elbow is 0.4 m from the
 /// shoulder, `upper` 0.25 m along the upper arm, `forearm` 0.2 m along the
 /// forearm; the wrist is the distal end of link 5.
@@ -282,4 +314,5 @@ pub const LWR_IV: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &DAMPING_POSTURES,
 };

@@ -249,6 +249,7 @@ pub const OPENARM_V10_RIGHT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_RIGHT,
     points: POINTS_RIGHT,
+    damping_postures: &[],
 };
 
 const FLANGE_LEFT: Pose = Pose {
@@ -474,4 +475,5 @@ pub const OPENARM_V10_LEFT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_LEFT,
     points: POINTS_LEFT,
+    damping_postures: &[],
 };

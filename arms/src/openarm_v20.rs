@@ -272,6 +272,7 @@ pub const OPENARM_V20_LEFT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_LEFT,
     points: POINTS_LEFT,
+    damping_postures: &[],
 };
 
 const FLANGE_RIGHT: Pose = Pose {
@@ -522,4 +523,5 @@ pub const OPENARM_V20_RIGHT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_RIGHT,
     points: POINTS_RIGHT,
+    damping_postures: &[],
 };

@@ -256,4 +256,5 @@ pub const PANDA: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &[],
 };

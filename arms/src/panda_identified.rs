@@ -186,4 +186,5 @@ pub const PANDA_IDENTIFIED: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    damping_postures: &[],
 };

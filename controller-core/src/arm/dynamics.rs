@@ -91,7 +91,7 @@ impl<T: Real> Dynamics<T> {
             gravity[i] = gx * group.first[1] - gy * group.first[0];
 
             let mut wrench = JointWrench::new(&group, &AxisRate::new(&motion[i]));
-            mass_matrix[(i, i)] = wrench.rows[2][0] + arm.rotor_inertia[i];
+            mass_matrix[(i, i)] = wrench.rows[2][0];
             coriolis_matrix[(i, i)] = wrench.rows[2][1];
             for j in (0..i).rev() {
                 wrench = wrench.in_parent(&transform(j + 1));
@@ -108,6 +108,9 @@ impl<T: Real> Dynamics<T> {
             }
         }
 
+        for i in 0..DOF {
+            self.mass_matrix[(i, i)] += arm.rotor_inertia[i];
+        }
         self.cholesky.update(&self.mass_matrix);
         self.momentum = self.mass_matrix * joints.dq;
         self.coriolis = self.coriolis_matrix * joints.dq;

@@ -88,10 +88,9 @@ impl<T: Real> Kinematics<T> {
         let zero = Vector3::from([T::ZERO; 3]);
         let k = self;
         (k.sine, k.cosine) = sines_cosines(&joints.q, &arm.zero_angle);
-        k.rotation[0] = arm.base_rotation;
+        let [mut x, mut y, mut z] = arm.base_axes;
+        k.rotation[0] = Matrix3::from_columns(&[x, y, z]);
         k.origin[0] = arm.base_shift;
-        let [mut x, mut y, mut z] =
-            [0, 1, 2].map(|axis| arm.base_rotation.column(axis).into_owned());
         let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
         for_each_joint!(i, {
             let link = &arm.links[i];

@@ -3,7 +3,7 @@
 use crate::arm::check::{ArmError, second_moment, validate};
 use crate::arm::exchange::AxisExchange;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
-use crate::joint::{DOF, JointVector, Lanes, Matrix3, Padded, Vector3, padded};
+use crate::joint::{DOF, JointVector, Lanes, Padded, Vector3, padded};
 use crate::real::Real;
 
 /// One link as the algorithms read it.
@@ -29,8 +29,8 @@ pub struct ArmModel<T: Real> {
     pub(crate) links: [LinkModel<T>; DOF],
     /// Before the first joint: no length, no twist, no mass.
     pub(crate) base: LinkModel<T>,
-    /// Axes of frame 0 in the columns, base-plate axes, and its origin \[m\].
-    pub(crate) base_rotation: Matrix3<T>,
+    /// Axes x, y, z of frame 0, base-plate axes, and its origin \[m\].
+    pub(crate) base_axes: [Vector3<T>; 3],
     pub(crate) base_shift: Vector3<T>,
     /// Gravitational acceleration \[m/s2\], axes of frame 0.
     pub(crate) gravity: Vector3<T>,
@@ -43,6 +43,7 @@ pub struct ArmModel<T: Real> {
     torque_limit: JointVector<T>,
     torque_rate_limit: JointVector<T>,
     brake_rate_limit: JointVector<T>,
+    pub(crate) damping_postures: &'static [[f64; DOF]],
 }
 
 impl<T: Real> ArmModel<T> {
@@ -74,7 +75,11 @@ impl<T: Real> ArmModel<T> {
                 None => LinkModel::fixed(),
             }),
             base: LinkModel::fixed(),
-            base_rotation: base.map(T::from_f64),
+            base_axes: [
+                base.column(0).map(T::from_f64),
+                base.column(1).map(T::from_f64),
+                base.column(2).map(T::from_f64),
+            ],
             base_shift: vector(parameters.base.shift),
             gravity: base
                 .tr_mul(&nalgebra::Vector3::from(parameters.gravity))
@@ -89,6 +94,7 @@ impl<T: Real> ArmModel<T> {
             torque_limit: column(|link| link.torque_limit),
             torque_rate_limit: column(|link| link.torque_rate_limit),
             brake_rate_limit: column(|link| link.brake_rate_limit),
+            damping_postures: parameters.damping_postures,
         }
     }
 

@@ -111,6 +111,10 @@ pub struct ArmParameters {
     pub flange: Pose,
     /// Points that have a name.
     pub points: &'static [NamedPoint],
+    /// Postures \[rad\] among which one is the worst for any diagonal null-space damping, of
+    /// these very tables. Empty: a search when a controller is made takes their place
+    /// ([`crate::law::sampling`]).
+    pub damping_postures: &'static [[f64; DOF]],
 }
 
 impl ArmParameters {

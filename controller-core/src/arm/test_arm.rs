@@ -46,4 +46,5 @@ pub(crate) const RODS: ArmParameters = ArmParameters {
     ],
     flange: Pose::at([0.0, 0.0, 0.1]),
     points: &[],
+    damping_postures: &[],
 };

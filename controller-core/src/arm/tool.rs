@@ -30,6 +30,8 @@ impl ArmParameters {
     #[must_use]
     pub fn with_tool(&self, tool: &Tool) -> Self {
         let mut arm = *self;
+        // They are those of the bare arm.
+        arm.damping_postures = &[];
         let [.., link] = &mut arm.links;
         let turn = rotation(&self.flange) * rotation(&tool.pose);
         let own_com = Vector3::from(link.com);
