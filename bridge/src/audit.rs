@@ -194,7 +194,7 @@ fn judge(theirs: &[f64], ours: &[f64], tolerance: f64) -> Agreement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+    use arms::{LWR_IV, LWR_IV_FLANGE};
     use controller_core::{Axes, ControllerConfig, Link, NullSpace, Task, TaskGains, TaskSet};
 
     /// The controller's own model as a robot would send it, and an audit of it

@@ -1,11 +1,12 @@
 //! The conversation, against a robot that stands still and says what the test wants.
 
+use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use bridge::audit::Agreement;
 use bridge::session::{ANSWER_LEN, Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
 use bridge::source::ReferenceSource;
+use controller_core::arm::ArmModel;
 use controller_core::arm::dynamics::Dynamics;
 use controller_core::arm::kinematics::Kinematics;
-use controller_core::arm::{ArmModel, LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::fault::FaultKind;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::law::null_space::NullDamping;

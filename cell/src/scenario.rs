@@ -13,7 +13,8 @@ mod session;
 
 use std::path::Path;
 
-use controller_core::arm::{ArmParameters, LWR_IV};
+use arms::LWR_IV;
+use controller_core::arm::ArmParameters;
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
@@ -211,9 +212,11 @@ impl Scenario {
         CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
         for (joint, (&angle, link)) in (1..).zip(self.start_deg.iter().zip(&LWR_IV.links)) {
             // Back from radians to the number of the data sheet.
-            let limit = (link.position_limit.to_degrees() * 1e9).round() / 1e9;
+            let [min, max] = link
+                .position_range
+                .map(|end| (end.to_degrees() * 1e9).round() / 1e9);
             let thing = format_args!("start_deg of joint {joint}");
-            Range::new(-limit, limit).check(thing, angle)?;
+            Range::new(min, max).check(thing, angle)?;
         }
         let levels = self.levels.len();
         if !LEVELS.contains(levels) {

@@ -1,6 +1,6 @@
 //! The sequence of `c/replay.c` through the core in Rust: the same lines.
 
-use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
 use controller_core::{

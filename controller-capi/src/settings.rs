@@ -6,9 +6,8 @@
 use core::fmt;
 use core::mem::MaybeUninit;
 
-use controller_core::arm::{
-    ArmParameters, LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS, LinkParameters,
-};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS};
+use controller_core::arm::{ArmParameters, Friction, LinkParameters, Pose};
 use controller_core::gain::diagonal;
 use controller_core::joint::DOF;
 use controller_core::law::null_space::{NullDamping, Posture};
@@ -204,7 +203,7 @@ impl From<&LinkParameters> for StratumLink {
             mass: link.mass,
             com: link.com,
             inertia: link.inertia,
-            position_limit: link.position_limit,
+            position_limit: link.position_range[1],
             speed_limit: link.speed_limit,
             torque_limit: link.torque_limit,
             torque_rate_limit: link.torque_rate_limit,
@@ -216,13 +215,18 @@ impl From<&LinkParameters> for StratumLink {
 impl StratumLink {
     fn parameters(&self) -> LinkParameters {
         LinkParameters {
+            name: "joint",
+            angle_offset: 0.0,
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            end_approach: None,
             a: self.a,
             alpha: self.alpha,
             d: self.d,
             mass: self.mass,
             com: self.com,
             inertia: self.inertia,
-            position_limit: self.position_limit,
+            position_range: [-self.position_limit, self.position_limit],
             speed_limit: self.speed_limit,
             torque_limit: self.torque_limit,
             torque_rate_limit: self.torque_rate_limit,
@@ -234,8 +238,8 @@ impl StratumLink {
 impl StratumArm {
     pub(crate) fn lwr_iv() -> Self {
         Self {
-            base_height: LWR_IV.base_height,
-            flange: LWR_IV.flange,
+            base_height: LWR_IV.base.shift[2],
+            flange: LWR_IV.flange.shift[2],
             gravity: LWR_IV.gravity,
             links: LWR_IV.links.each_ref().map(StratumLink::from),
         }
@@ -244,8 +248,10 @@ impl StratumArm {
     fn parameters(&self) -> ArmParameters {
         ArmParameters {
             name: "settings",
-            base_height: self.base_height,
-            flange: self.flange,
+            base: Pose::at([0.0, 0.0, self.base_height]),
+            flange: Pose::at([0.0, 0.0, self.flange]),
+            points: &[],
+            damping_postures: &[],
             gravity: self.gravity,
             links: self.links.each_ref().map(StratumLink::parameters),
         }
@@ -305,7 +311,7 @@ impl Default for StratumSettings {
         let flange = StratumLevel {
             task: STRATUM_TASK_POSITION,
             link: 7,
-            offset: [0.0, 0.0, LWR_IV.flange],
+            offset: LWR_IV.flange.shift,
             axes: STRATUM_AXIS_X + STRATUM_AXIS_Y + STRATUM_AXIS_Z,
             reserved: 0,
             stiffness: diagonal([400.0; 3]),

@@ -3,7 +3,7 @@
 use std::ffi::{CStr, c_char};
 use std::ptr::{null, null_mut};
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::fault::FaultKind;
 use stratum::*;
 

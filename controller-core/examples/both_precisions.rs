@@ -4,7 +4,7 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
 use controller_core::{

@@ -3,21 +3,27 @@
 //!
 //! Conventions. Frames follow the standard Denavit-Hartenberg table: frame i
 //! moves with link i, axis z of frame i - 1 is the axis of joint i, frame 0 is
-//! fixed at `base_height` above the mounting plate. Positions are expressed in
+//! fixed at `base` of the tables. Positions are expressed in
 //! the base-plate frame, z up.
 
+mod check;
 pub mod dynamics;
 mod exchange;
 pub mod kinematics;
 mod link;
-mod lwr_iv;
 mod model;
 mod moments;
 mod parameters;
+mod pose;
+#[cfg(test)]
+pub(crate) mod test_arm;
+mod tool;
 mod transform;
 
+pub use check::ArmError;
 pub use link::{Link, LinkPoint, NamedPoint};
-pub use lwr_iv::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS};
 pub use model::ArmModel;
 pub(crate) use model::LinkModel;
-pub use parameters::{ArmError, ArmParameters, LinkParameters};
+pub use parameters::{ArmParameters, EndApproach, Friction, LinkParameters};
+pub use pose::Pose;
+pub use tool::Tool;

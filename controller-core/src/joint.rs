@@ -34,10 +34,19 @@ pub const fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C
 /// would be wasted. The results are the same.
 const ALIKE: usize = if cfg!(target_arch = "arm") { DOF } else { 8 };
 
-/// Sine and cosine of every angle \[rad\].
+/// One value per joint where functions of all joints are computed, the rest 0.
+pub(crate) type Padded<T> = [T; ALIKE];
+
+/// Sine and cosine of every angle q - `zero` \[rad\].
 #[inline(always)]
-pub(crate) fn sines_cosines<T: Real>(q: &JointVector<T>) -> (JointVector<T>, JointVector<T>) {
+pub(crate) fn sines_cosines<T: Real>(
+    q: &JointVector<T>,
+    zero: &Padded<T>,
+) -> (JointVector<T>, JointVector<T>) {
     let mut sines = padded(q);
+    for (angle, &zero) in sines.iter_mut().zip(zero) {
+        *angle -= zero;
+    }
     let mut cosines = [T::ZERO; ALIKE];
     for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
         (*sine, *cosine) = sine.sine_cosine();
@@ -56,7 +65,7 @@ pub(crate) fn exponentials<T: Real>(x: &JointVector<T>) -> JointVector<T> {
 }
 
 #[inline(always)]
-fn padded<T: Real>(x: &JointVector<T>) -> [T; ALIKE] {
+pub(crate) fn padded<T: Real>(x: &JointVector<T>) -> Padded<T> {
     let mut values = [T::ZERO; ALIKE];
     for i in 0..DOF {
         values[i] = x[i];
@@ -65,7 +74,7 @@ fn padded<T: Real>(x: &JointVector<T>) -> [T; ALIKE] {
 }
 
 #[inline(always)]
-fn cut<T: Real>(values: &[T; ALIKE]) -> JointVector<T> {
+fn cut<T: Real>(values: &Padded<T>) -> JointVector<T> {
     let mut vector = zeros();
     for i in 0..DOF {
         vector[i] = values[i];

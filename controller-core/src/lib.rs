@@ -14,7 +14,7 @@
 //! engineer being able to follow it.
 //!
 //! ```
-//! use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+//! use arms::{LWR_IV, LWR_IV_FLANGE};
 //! use controller_core::{
 //!     Axes, Controller, ControllerConfig, Measurement, NullSpace, Reference, State, Target,
 //!     Task, TaskGains, TaskSet,

@@ -24,7 +24,17 @@ pub const POINT_OFFSET_MAX_M: f64 = 10.0;
 /// Largest h c of an inertia-shaped damping D = c M.
 pub const INERTIA_DAMPING_BOUND: f64 = 0.5;
 
-/// How far beyond its limit a measured joint position is still believed \[rad\].
+/// Largest |angle| \[rad\] of a joint, offset and margin included: 100 turns, which is as far as
+/// [`Real::sine_cosine`](crate::real::Real::sine_cosine) is tested.
+pub const ANGLE_MAX: f64 = 100.0 * core::f64::consts::TAU;
+
+/// Largest gravitational acceleration \[m/s2\]: beyond it a unit is mistaken.
+pub const GRAVITY_MAX: f64 = 30.0;
+
+/// Least mass of a link \[kg\]: below it the mass matrix has no inverse in single precision.
+pub const MASS_MIN: f64 = 1e-6;
+
+/// How far beyond its range a measured joint position is still believed \[rad\].
 pub const POSITION_MARGIN: f64 = 0.2;
 
 /// Multiple of the data-sheet speed up to which a measured speed is believed.
@@ -63,7 +73,7 @@ pub const TARGET_SPEED_MAX: [f64; 2] = [20.0, 200.0];
 /// Largest |ddx_d| \[m/s2\] and |dw_d| \[rad/s2\].
 pub const TARGET_ACCELERATION_MAX: [f64; 2] = [500.0, 5000.0];
 
-/// Multiple of the range of a joint within which q_d must be.
+/// Multiple of the range of a joint, about its middle, within which q_d must be.
 pub const POSTURE_FACTOR: f64 = 2.0;
 
 /// From this on a target is elsewhere than the one before it leads to: position \[m\] and

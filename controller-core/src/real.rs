@@ -30,8 +30,9 @@ pub trait Real:
     /// Square root, correctly rounded; NaN for negative input.
     fn square_root(self) -> Self;
     /// `(sin x, cos x)` for an angle `self` in rad, |x| <= 2 pi: within 1.5
-    /// units in the last place. Outside that range accuracy fades; there is no
-    /// other harm, and a non-finite angle gives NaN.
+    /// units in the last place. Up to 100 turns within epsilon |x|, which is how far
+    /// neighbours of the angle are apart. Beyond, accuracy fades; there is no other
+    /// harm, and a non-finite angle gives NaN.
     fn sine_cosine(self) -> (Self, Self);
     /// `exp(-x)` for `self` >= 0: within 2 units in the last place up to where
     /// the result leaves the normal numbers; there it stays at about 1e-304
@@ -284,6 +285,24 @@ mod tests {
             }
         }
         assert!(worst64 <= 1.5 && worst32 <= 1.5, "{worst64} {worst32}");
+    }
+
+    #[test]
+    fn sine_and_cosine_of_many_turns_are_as_good_as_the_angle() {
+        for i in 1..200_000 {
+            let x = f64::from(i) / 200_000.0 * crate::ranges::ANGLE_MAX;
+            for x in [x, -x] {
+                let (s, c) = x.sine_cosine();
+                let allowed = f64::EPSILON * x.abs().max(1.0);
+                assert!((s - libm::sin(x)).abs() <= allowed, "{x}");
+                assert!((c - libm::cos(x)).abs() <= allowed, "{x}");
+                let x = x as f32;
+                let (s, c) = x.sine_cosine();
+                let (wide, allowed) = (f64::from(x), f32::EPSILON * x.abs().max(1.0));
+                assert!((s - libm::sin(wide) as f32).abs() <= allowed, "{x}");
+                assert!((c - libm::cos(wide) as f32).abs() <= allowed, "{x}");
+            }
+        }
     }
 
     #[test]

@@ -144,9 +144,8 @@ impl<T: Real> Resolver<T> {
         }
         let damping = T::from_f64(2.0 / cycle_s);
         Ok(Self {
+            levels: Levels::new(tasks, &arm).with_gains(damping * T::from_f64(gain), damping),
             arm,
-            levels: Levels::new(tasks, arm.parameters())
-                .with_gains(damping * T::from_f64(gain), damping),
             cycle_s: T::from_f64(cycle_s),
         })
     }
@@ -206,7 +205,7 @@ impl<T: Real> Resolver<T> {
         q: &JointVector<T>,
         dq: &JointVector<T>,
     ) -> Resolution<T> {
-        let (speeds, positions) = (self.arm.speed_limit(), self.arm.position_limit());
+        let (speeds, [least, greatest]) = (self.arm.speed_limit(), self.arm.position_range());
         let lead = T::from_f64(COMMAND_LEAD_MAX);
         let mut saturated = IndexSet::NONE;
         let mut excess = T::ONE;
@@ -219,7 +218,7 @@ impl<T: Real> Resolver<T> {
         for i in 0..DOF {
             let wanted = state.commanded[i] + self.cycle_s * dq[i];
             let near = wanted.limited(q[i] - lead, q[i] + lead);
-            let reached = near.limited(-positions[i], positions[i]);
+            let reached = near.limited(least[i], greatest[i]);
             saturated.insert_if(i, reached != wanted);
             state.commanded[i] = reached;
         }

@@ -4,8 +4,8 @@ use std::net::UdpSocket;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use arms::LWR_IV_FLANGE;
 use bridge::source::ReferenceSource;
-use controller_core::arm::LWR_IV_FLANGE;
 use controller_core::{Axes, Reference, Target, Task, TaskGains, TaskSet};
 use firmware_host::stream::Stream;
 

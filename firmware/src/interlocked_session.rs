@@ -1,10 +1,10 @@
 //! The controller for a robot at the other end of a datagram link, with the interlock
 //! in between: the FRI session of the `bridge` crate without a PC.
 
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
 use bridge::source::ReferenceSource;
 use bridge::transport::DatagramLink;
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::joint::zeros;
 use controller_core::law::null_space::NullDamping;
 use controller_core::{ConfigError, Reference};

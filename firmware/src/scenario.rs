@@ -1,7 +1,7 @@
 //! The two scenarios that the target runs, as constants: the same as the
 //! built-in scenarios of that name, which a test checks.
 
-use controller_core::arm::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::{DOF, JointVector};
 use controller_core::real::Real;
 use controller_core::task::trajectory::{Plane, Trajectory};

@@ -1,7 +1,7 @@
 //! Inputs of the timing table: random ones within the limits of the arm, and
 //! those that look hardest. The same numbers on host and target.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector, Vector3};
 use controller_core::ranges::{POSITION_MARGIN, SPEED_FACTOR};
 use controller_core::real::Real;
@@ -112,7 +112,7 @@ pub fn input<T: Real>(controller: &Controller<T>, index: u32) -> (Measurement<T>
     // Just inside what is believed, in single precision too.
     let believed = 1.0 - 1e-6;
     for (joint, link) in LWR_IV.links.iter().enumerate() {
-        let (position, speed) = (link.position_limit, link.speed_limit);
+        let (position, speed) = (link.position_range[1], link.speed_limit);
         let edge = (position + POSITION_MARGIN) * believed;
         let fastest = speed * SPEED_FACTOR * believed;
         let (some_q, some_dq) = (random.signed() * position, random.signed() * speed);

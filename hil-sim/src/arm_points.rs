@@ -1,8 +1,8 @@
 //! Where points and links of the arm are in a posture, by the plant's own geometry.
 
+use arms::LWR_IV;
 use cell::scenario::{LevelSpec, Scenario, TaskSpec};
 use controller_core::Target;
-use controller_core::arm::LWR_IV;
 use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use controller_core::real::Real;
 

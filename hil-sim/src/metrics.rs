@@ -171,20 +171,20 @@ pub struct JointFigures {
 pub struct Beyond {
     /// The joint, from 1.
     pub joint: usize,
-    /// The position farthest from the middle \[rad\].
+    /// The position farthest outside its range \[rad\].
     pub reached: f64,
-    /// What it may be, to either side \[rad\].
-    pub limit: f64,
+    /// What it may be \[rad\].
+    pub range: [f64; 2],
 }
 
 impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (joint, reached) = (self.joint, self.reached.to_degrees());
         // Back from radians to the number of the data sheet.
-        let limit = (self.limit.to_degrees() * 1e9).round() / 1e9;
+        let [min, max] = self.range.map(|end| (end.to_degrees() * 1e9).round() / 1e9);
         write!(
             f,
-            "joint {joint} reached {reached:.4} deg, its range is -{limit} to {limit}"
+            "joint {joint} reached {reached:.4} deg, its range is {min} to {max}"
         )
     }
 }
@@ -251,7 +251,7 @@ pub struct Metrics {
     max_torque: [f64; DOF],
     lowest: [f64; DOF],
     highest: [f64; DOF],
-    position_limit: JointVector<f64>,
+    position_range: [JointVector<f64>; 2],
     /// Of the change of torque in a cycle \[Nm\].
     step_bound: JointVector<f64>,
     last_torque: Option<JointVector<f64>>,
@@ -284,7 +284,10 @@ impl Metrics {
             max_torque: [0.0; DOF],
             lowest: [f64::INFINITY; DOF],
             highest: [f64::NEG_INFINITY; DOF],
-            position_limit: limit(|link| link.position_limit),
+            position_range: [
+                limit(|link| link.position_range[0]),
+                limit(|link| link.position_range[1]),
+            ],
             step_bound: limit(|link| link.torque_rate_limit) * (STEP_SHARE * cycle_s),
             last_torque: None,
             step: None,
@@ -336,7 +339,7 @@ impl Metrics {
             self.max_torque[joint] = self.max_torque[joint].max(torque.abs());
             self.lowest[joint] = self.lowest[joint].min(q);
             self.highest[joint] = self.highest[joint].max(q);
-            beyond |= q.abs() > self.position_limit[joint] + ROUNDING_RAD;
+            beyond |= self.excess(joint, q) > ROUNDING_RAD;
         }
         self.add_step(sample);
         self.limits.position += usize::from(beyond);
@@ -414,16 +417,21 @@ impl Metrics {
     pub fn beyond(&self) -> impl Iterator<Item = Beyond> {
         (0..DOF).filter_map(|index| {
             let (lowest, highest) = (self.lowest[index], self.highest[index]);
-            let reached = if -lowest > highest { lowest } else { highest };
-            let limit = self.position_limit[index];
-            let joint = index + 1;
-            let is_beyond = reached.abs() > limit + ROUNDING_RAD && self.cycles > 0;
+            let [low, high] = [lowest, highest].map(|q| self.excess(index, q));
+            let reached = if low > high { lowest } else { highest };
+            let is_beyond = low.max(high) > ROUNDING_RAD && self.cycles > 0;
             is_beyond.then_some(Beyond {
-                joint,
+                joint: index + 1,
                 reached,
-                limit,
+                range: self.position_range.map(|end| end[index]),
             })
         })
+    }
+
+    /// How far `q` \[rad\] of a joint is outside its range; negative inside.
+    fn excess(&self, index: usize, q: f64) -> f64 {
+        let [least, greatest] = self.position_range.map(|end| end[index]);
+        (least - q).max(q - greatest)
     }
 
     /// Torque figures.

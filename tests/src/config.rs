@@ -1,11 +1,9 @@
 //! The reference configurations of the experiments.
 
-use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::{Axes, ControllerConfig, LinkPoint, NullSpace, Task, TaskGains, TaskSet};
 
-pub use controller_core::arm::{
-    LWR_IV_DAMPING as REFERENCE_DAMPING, LWR_IV_STIFFNESS as REFERENCE_STIFFNESS,
-};
+pub use arms::{LWR_IV_DAMPING as REFERENCE_DAMPING, LWR_IV_STIFFNESS as REFERENCE_STIFFNESS};
 
 /// K_p = 400 /s2, K_d = 40 /s on every axis.
 pub const REFERENCE_GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
@@ -13,9 +11,9 @@ pub const REFERENCE_GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
 /// 0.078 m beyond the wrist.
 pub const FLANGE: LinkPoint = LWR_IV_FLANGE;
 /// End of the upper arm.
-pub const ELBOW: LinkPoint = LWR_IV_POINTS[1].point;
+pub const ELBOW: LinkPoint = LWR_IV.points[1].point;
 /// End of the forearm.
-pub const WRIST: LinkPoint = LWR_IV_POINTS[3].point;
+pub const WRIST: LinkPoint = LWR_IV.points[3].point;
 
 /// The tasks as levels, the null space of the experiments, 2 ms cycle.
 ///

@@ -2,7 +2,7 @@
 
 #![expect(missing_docs, reason = "fields as in the files, described there")]
 
-use controller_core::arm::{ArmParameters, LinkParameters};
+use controller_core::arm::{ArmParameters, Friction, LinkParameters, Pose};
 use controller_core::joint::{DOF, JointMatrix, JointState};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -88,17 +88,24 @@ impl Tables {
     pub fn parameters(&self) -> ArmParameters {
         ArmParameters {
             name: "golden",
-            base_height: self.base_height,
-            flange: self.flange,
+            base: Pose::at([0.0, 0.0, self.base_height]),
+            flange: Pose::at([0.0, 0.0, self.flange]),
+            points: &[],
+            damping_postures: &[],
             gravity: self.gravity,
             links: self.links.each_ref().map(|link| LinkParameters {
+                name: "joint",
+                angle_offset: 0.0,
+                rotor_inertia: 0.0,
+                friction: Friction::NONE,
+                end_approach: None,
                 a: link.a,
                 alpha: link.alpha,
                 d: link.d,
                 mass: link.mass,
                 com: link.com,
                 inertia: link.inertia,
-                position_limit: link.position_limit,
+                position_range: [-link.position_limit, link.position_limit],
                 speed_limit: link.speed_limit,
                 torque_limit: link.torque_limit,
                 torque_rate_limit: 1e4,

@@ -1,8 +1,9 @@
 //! Helpers shared by the workspace tests.
 
+use arms::LWR_IV;
+use controller_core::arm::ArmModel;
 use controller_core::arm::dynamics::Dynamics;
 use controller_core::arm::kinematics::Kinematics;
-use controller_core::arm::{ArmModel, LWR_IV};
 use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::real::Real;
 use controller_core::{Controller, ControllerConfig};

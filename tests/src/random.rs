@@ -1,6 +1,6 @@
 //! Seeded random states of the arm.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
 use hil_sim::plant::noise::Rng;
 
@@ -28,7 +28,7 @@ impl States {
     pub fn state(&mut self) -> JointState<f64> {
         let links = &LWR_IV.links;
         JointState {
-            q: JointVector::from_fn(|i, _| self.signed() * links[i].position_limit),
+            q: JointVector::from_fn(|i, _| self.signed() * links[i].position_range[1]),
             dq: JointVector::from_fn(|i, _| self.signed() * links[i].speed_limit),
         }
     }

@@ -1,8 +1,8 @@
 //! What happens to the arm behind a fault, and the limit on the rate of its torque, against
 //! closed forms on the ideal plant.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::LWR_IV;
 use controller_core::fault::{Fault, Mode, Quantity};
 use controller_core::joint::{JointState, JointVector, zeros};
 use controller_core::ranges::{BLIND_FADE_S, BRAKE_RATE, POSITION_MARGIN, RESTING_SPEED};
@@ -115,7 +115,7 @@ fn a_fault_that_is_true_is_followed_and_a_jump_is_not() {
     let controller = controller::<f64>(&two_level());
     let beyond = |by: f64| {
         let mut q = JointVector::from(POSTURE);
-        q[6] = LWR_IV.links[6].position_limit + POSITION_MARGIN + by;
+        q[6] = LWR_IV.links[6].position_range[1] + POSITION_MARGIN + by;
         q
     };
     let hold = Reference::hold(1, POSTURE);

@@ -12,7 +12,7 @@ mod plausibility;
 #[path = "controller/targets.rs"]
 mod targets;
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::cycle::record::Recorder;
 use controller_core::fault::{IndexSet, Quantity};
 use controller_core::joint::{JointState, JointVector, Vector3, zeros};

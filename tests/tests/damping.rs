@@ -1,7 +1,7 @@
 //! The sampling bound: its postures are the worst ones, and it lies where a sampled
 //! loop really becomes unstable.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{JointMatrix, JointState, JointVector};
 use controller_core::law::sampling::{bound, fastest_mode, mode_at};
 use controller_core::{ConfigError, Controller, ControllerConfig};

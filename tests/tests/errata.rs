@@ -4,7 +4,7 @@
 #[path = "errata/closed_loop.rs"]
 mod closed_loop;
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::joint::{JointState, JointVector};
 use hil_sim::plant::PlantModel;
 use stratum_tests::config::REFERENCE_DAMPING;

@@ -1,8 +1,9 @@
 //! The core's kinematics and dynamics against Pinocchio at 200 states, both
 //! precisions.
 
+use arms::LWR_IV;
 use controller_core::LinkPoint;
-use controller_core::arm::{ArmModel, LWR_IV_POINTS};
+use controller_core::arm::ArmModel;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::real::Real;
 use stratum_tests::golden::{Golden, GoldenArm, Worst};
@@ -47,7 +48,7 @@ fn check<T: Real>(arm: &GoldenArm, epsilon: f64) {
         let inverse = dynamics.mass_matrix * ddq + dynamics.coriolis + dynamics.gravity;
         torque.add(relative(&inverse.map(Real::to_f64), &golden.rnea, 1.0));
 
-        for point in LWR_IV_POINTS {
+        for point in LWR_IV.points {
             let Some(expected) = golden.points.get(point.name) else {
                 continue;
             };

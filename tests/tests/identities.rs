@@ -1,8 +1,9 @@
 //! The core's kinematics and dynamics against identities that any correct
 //! model obeys, and against the independent plant.
 
+use arms::LWR_IV;
 use cell::scenario::{BUILT_IN, Scenario};
-use controller_core::arm::{LWR_IV, Link};
+use controller_core::arm::Link;
 use controller_core::joint::{JointState, JointVector, Vector3};
 use hil_sim::contact::Contacts;
 use hil_sim::plant::PlantModel;

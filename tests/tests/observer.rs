@@ -2,8 +2,8 @@
 //! the gain and the interval, and inside the controller it is fed with what
 //! really happened.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::LWR_IV;
 use controller_core::cycle::observer::{Observer, external_torque};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::law::null_space::NullDamping;

@@ -122,7 +122,7 @@ fn angle(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 
 /// The frame of the flange by the plant's points.
 fn frame(q: &JointVector<f64>) -> Matrix3<f64> {
-    let plant = PlantModel::new(&controller_core::arm::LWR_IV);
+    let plant = PlantModel::new(&arms::LWR_IV);
     let state = JointState {
         q: *q,
         dq: JointVector::zeros(),

@@ -1,8 +1,9 @@
 //! The plant against golden data of an independent library, against closed
 //! forms, and against what a mechanical system must do.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
 use hil_sim::plant::{Plant, PlantModel, Rng, mismatched, noise};
 use std::f64::consts::{PI, TAU};
@@ -25,13 +26,13 @@ fn the_golden_tables_are_those_of_the_product() {
         .split(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
         .filter_map(|token| token.parse().ok())
         .collect();
-    let mut expected = vec![LWR_IV.base_height, LWR_IV.flange];
+    let mut expected = vec![LWR_IV.base.shift[2], LWR_IV.flange.shift[2]];
     expected.extend(LWR_IV.gravity);
     for link in &LWR_IV.links {
         expected.extend([link.a, link.alpha, link.d, link.mass]);
         expected.extend(link.com);
         expected.extend(link.inertia);
-        expected.extend([link.position_limit, link.speed_limit, link.torque_limit]);
+        expected.extend([link.position_range[1], link.speed_limit, link.torque_limit]);
     }
     assert_eq!(numbers, expected);
 }
@@ -81,7 +82,7 @@ fn points_and_jacobians_agree_with_pinocchio() {
     for golden in &golden.nominal.states {
         let state = golden.state();
         for (name, link, offset) in [
-            ("flange", 7, Vector3::new(0.0, 0.0, LWR_IV.flange)),
+            ("flange", 7, Vector3::from(LWR_IV.flange.shift)),
             ("elbow", 3, Vector3::zeros()),
             ("upper", 3, Vector3::new(0.0, 0.15, 0.0)),
             ("wrist", 5, Vector3::zeros()),

@@ -3,9 +3,9 @@
 
 use std::time::Instant;
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
 use cell::scenario::Scenario;
-use controller_core::arm::LWR_IV;
 use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::ranges::DEAD_CYCLES_MAX;
 use controller_core::{Controller, Measurement, State, Target};

@@ -6,8 +6,8 @@ mod any_input;
 
 use std::cell::{Cell, RefCell};
 
+use arms::LWR_IV;
 use controller_core::Target;
-use controller_core::arm::LWR_IV;
 use controller_core::cycle::Data;
 use controller_core::joint::{DOF, JointState, JointVector};
 use controller_core::law::control::{Control, TorqueDemand};
@@ -62,7 +62,7 @@ fn states(
         .prop_map(|(split, q, dq, aligned, decades, seed)| {
             let links = &LWR_IV.links;
             let mut state = JointState {
-                q: JointVector::from_fn(|i, _| q[i] * links[i].position_limit),
+                q: JointVector::from_fn(|i, _| q[i] * links[i].position_range[1]),
                 dq: JointVector::from_fn(|i, _| dq[i] * links[i].speed_limit),
             };
             for (bit, joint) in [1, 3, 5].into_iter().enumerate() {

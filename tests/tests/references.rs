@@ -1,6 +1,6 @@
 //! What a reference may ask for, and what becomes of one that jumps.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::fault::{Fault, LimitKind, Quantity};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::ranges::{
@@ -118,7 +118,7 @@ fn bounds<T: Real>() {
         }
     }
     for joint in 0..7 {
-        let bound = POSTURE_FACTOR * LWR_IV.links[joint].position_limit;
+        let bound = POSTURE_FACTOR * LWR_IV.links[joint].position_range[1];
         for (value, refused) in [
             (0.9999, false),
             (-0.9999, false),

@@ -1,8 +1,8 @@
 //! The velocity-level resolver against (1)-(5) in explicit inverses, on its own: the
 //! position that it commands is the one that it measures in the next cycle.
 
+use arms::LWR_IV;
 use cell::scenario::{LevelSpec, Scenario};
-use controller_core::arm::LWR_IV;
 use controller_core::fault::Quantity;
 use controller_core::joint::{JointState, JointVector, Vector3, zeros};
 use controller_core::ranges::COMMAND_LEAD_MAX;
@@ -280,7 +280,7 @@ fn commands_stay_within_speed_range_and_reach_of_the_arm() {
         limited |= step.status.saturated.any();
         for (i, link) in LWR_IV.links.iter().enumerate() {
             assert!(step.dq[i].abs() <= link.speed_limit * (1.0 + 1e-15));
-            assert!(step.q[i].abs() <= link.position_limit);
+            assert!(step.q[i].abs() <= link.position_range[1]);
             assert!((step.q[i] - q[i]).abs() <= COMMAND_LEAD_MAX * (1.0 + 1e-12));
         }
         if cycle < 2000 {

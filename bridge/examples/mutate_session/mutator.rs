@@ -2,9 +2,9 @@
 
 use std::fmt;
 
+use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
 use bridge::source::ReferenceSource;
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
 use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};

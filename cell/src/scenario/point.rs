@@ -1,6 +1,6 @@
 //! Points of the arm in files: by name, or on any link.
 
-use controller_core::arm::{LWR_IV_FLANGE, LWR_IV_POINTS};
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::{Link, LinkPoint};
 use serde::Deserialize;
 
@@ -38,12 +38,11 @@ impl PointSpec {
     pub fn validate(&self) -> Result<(), Invalid> {
         match self {
             Self::Name(name) => {
-                let known = LWR_IV_POINTS.map(|point| point.name);
-                if known.contains(&name.as_str()) {
-                    Ok(())
-                } else {
-                    Err(Invalid::name("point", name, &known))
+                if LWR_IV.point(name).is_some() {
+                    return Ok(());
                 }
+                let known: Vec<_> = LWR_IV.points.iter().map(|point| point.name).collect();
+                Err(Invalid::name("point", name, &known))
             }
             Self::OnLink(OnLink { link, offset_m }) => {
                 LINK.check("link", *link)?;
@@ -58,10 +57,7 @@ impl PointSpec {
     #[must_use]
     pub fn resolve(&self) -> LinkPoint {
         match self {
-            Self::Name(name) => LWR_IV_POINTS
-                .into_iter()
-                .find(|named| named.name == name)
-                .map_or(LWR_IV_FLANGE, |named| named.point),
+            Self::Name(name) => LWR_IV.point(name).unwrap_or(LWR_IV_FLANGE),
             Self::OnLink(OnLink { link, offset_m }) => LinkPoint {
                 link: Link::from_number(*link).unwrap_or(Link::L7),
                 offset: *offset_m,

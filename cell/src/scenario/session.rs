@@ -1,10 +1,10 @@
 //! A scenario as the bridge runs it: configuration of the session, and its
 //! reference motion.
 
+use arms::LWR_IV_FLANGE;
 use bridge::session::SessionConfig;
 use bridge::source::ReferenceSource;
 use controller_core::Reference;
-use controller_core::arm::LWR_IV_FLANGE;
 use controller_core::law::null_space::NullDamping;
 
 use super::{ReferenceSpec, Scenario};

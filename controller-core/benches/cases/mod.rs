@@ -4,9 +4,7 @@
 
 pub mod stages;
 
-use controller_core::arm::{
-    LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_POINTS, LWR_IV_STIFFNESS,
-};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::resolver::{Resolver, ResolverConfig};
@@ -42,8 +40,7 @@ pub struct Input {
 
 /// The controller with two or three levels, the null space counted.
 pub fn levels<T: Real>(count: usize) -> Case<T> {
-    let wrist = LWR_IV_POINTS.iter().find(|named| named.name == "wrist");
-    let wrist = wrist.expect("a point of the arm").point;
+    let wrist = LWR_IV.point("wrist").expect("a point of the arm");
     let gains = TaskGains::uniform(400.0, 40.0);
     let tasks = [
         Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
@@ -105,7 +102,7 @@ impl Random {
 /// at rest, at the border of what is believed, denormal, saturated.
 pub fn states() -> Vec<Input> {
     let mut random = Random(ChaCha8Rng::seed_from_u64(1));
-    let position = |i: usize| LWR_IV.links[i].position_limit;
+    let position = |i: usize| LWR_IV.links[i].position_range[1];
     let speed = |i: usize| LWR_IV.links[i].speed_limit;
     let mut states: Vec<Input> = (0..RANDOM)
         .map(|_| Input {

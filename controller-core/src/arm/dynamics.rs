@@ -20,7 +20,7 @@ use crate::real::Real;
 /// Everything of the equation of motion (6) that depends on q and dq.
 #[derive(Clone, Copy, Debug)]
 pub struct Dynamics<T: Real> {
-    /// M(q) \[kg m2\], symmetric, positive definite.
+    /// M(q) \[kg m2\], rotors included, symmetric, positive definite.
     pub mass_matrix: JointMatrix<T>,
     /// C(q, dq) \[Nms/rad\], Christoffel form.
     pub coriolis_matrix: JointMatrix<T>,
@@ -108,6 +108,9 @@ impl<T: Real> Dynamics<T> {
             }
         }
 
+        for i in 0..DOF {
+            self.mass_matrix[(i, i)] += arm.rotor_inertia[i];
+        }
         self.cholesky.update(&self.mass_matrix);
         self.momentum = self.mass_matrix * joints.dq;
         self.coriolis = self.coriolis_matrix * joints.dq;

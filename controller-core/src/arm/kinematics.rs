@@ -31,7 +31,7 @@ pub struct Kinematics<T: Real> {
     pub angular_velocity: [Vector3<T>; FRAMES],
     /// Velocity of the origin of frame i, carried by link i \[m/s\].
     pub origin_velocity: [Vector3<T>; FRAMES],
-    /// Sine and cosine of q, for the dynamics.
+    /// Sine and cosine of the DH angles, for the dynamics.
     pub(crate) sine: JointVector<T>,
     pub(crate) cosine: JointVector<T>,
 }
@@ -87,20 +87,16 @@ impl<T: Real> Kinematics<T> {
     pub fn update(&mut self, arm: &ArmModel<T>, joints: &JointState<T>) {
         let zero = Vector3::from([T::ZERO; 3]);
         let k = self;
-        (k.sine, k.cosine) = sines_cosines(&joints.q);
-        k.rotation[0] = Matrix3::identity();
-        k.origin[0] = Vector3::from([T::ZERO, T::ZERO, arm.base_height]);
-        let [mut x, mut y, mut z] = [
-            [T::ONE, T::ZERO, T::ZERO],
-            [T::ZERO, T::ONE, T::ZERO],
-            [T::ZERO, T::ZERO, T::ONE],
-        ]
-        .map(Vector3::from);
+        (k.sine, k.cosine) = sines_cosines(&joints.q, &arm.zero_angle);
+        let [mut x, mut y, mut z] = arm.base_axes;
+        k.rotation[0] = Matrix3::from_columns(&[x, y, z]);
+        k.origin[0] = arm.base_shift;
         let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
         for_each_joint!(i, {
             let link = &arm.links[i];
             let (sin, cos) = (k.sine[i], k.cosine[i]);
-            let axis_rate = spin.cross(&z);
+            // The base does not turn.
+            let axis_rate = if i == 0 { zero } else { spin.cross(&z) };
             for row in 0..3 {
                 k.axis[row][i] = z[row];
                 k.axis_rate[row][i] = axis_rate[row];
@@ -116,7 +112,7 @@ impl<T: Real> Kinematics<T> {
                 origin += shift;
                 velocity += spin.cross(&shift);
             }
-            (y, z) = match link.exchange.0 {
+            (y, z) = match AxisExchange::turn(link.exchange.0) {
                 AxisExchange::NONE => (turned_y, z),
                 AxisExchange::RIGHT => (z, -turned_y),
                 AxisExchange::LEFT => (-z, turned_y),

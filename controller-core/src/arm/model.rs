@@ -1,8 +1,10 @@
 //! The validated arm, as the algorithms read it.
 
+use crate::arm::check::{ArmError, second_moment, validate};
 use crate::arm::exchange::AxisExchange;
-use crate::arm::parameters::{ArmError, ArmParameters, LinkParameters, second_moment, validate};
-use crate::joint::{DOF, JointVector, Lanes, Vector3};
+use crate::arm::link::LinkPoint;
+use crate::arm::parameters::{ArmParameters, LinkParameters};
+use crate::joint::{DOF, JointVector, Lanes, Padded, Vector3, padded};
 use crate::real::Real;
 
 /// One link as the algorithms read it.
@@ -28,14 +30,21 @@ pub struct ArmModel<T: Real> {
     pub(crate) links: [LinkModel<T>; DOF],
     /// Before the first joint: no length, no twist, no mass.
     pub(crate) base: LinkModel<T>,
-    pub(crate) base_height: T,
+    /// Axes x, y, z of frame 0, base-plate axes, and its origin \[m\].
+    pub(crate) base_axes: [Vector3<T>; 3],
+    pub(crate) base_shift: Vector3<T>,
+    /// Gravitational acceleration \[m/s2\], axes of frame 0.
     pub(crate) gravity: Vector3<T>,
-    position_limit: JointVector<T>,
+    /// q at which the DH angles are 0 \[rad\].
+    pub(crate) zero_angle: Padded<T>,
+    /// \[kg m2\].
+    pub(crate) rotor_inertia: JointVector<T>,
+    position_range: [JointVector<T>; 2],
     speed_limit: JointVector<T>,
     torque_limit: JointVector<T>,
     torque_rate_limit: JointVector<T>,
     brake_rate_limit: JointVector<T>,
-    parameters: ArmParameters,
+    pub(crate) damping_postures: &'static [[f64; DOF]],
 }
 
 impl<T: Real> ArmModel<T> {
@@ -59,27 +68,62 @@ impl<T: Real> ArmModel<T> {
             let mut values = parameters.links.iter().map(pick);
             JointVector::from_fn(|_, _| T::from_f64(values.next().unwrap_or(0.0)))
         };
+        // nalgebra takes columns.
+        let base = nalgebra::Matrix3::from(parameters.base.rotation).transpose();
         Self {
             links: core::array::from_fn(|i| match parameters.links.get(i) {
                 Some(link) => LinkModel::new(link),
                 None => LinkModel::fixed(),
             }),
             base: LinkModel::fixed(),
-            base_height: T::from_f64(parameters.base_height),
-            gravity: vector(parameters.gravity),
-            position_limit: column(|link| link.position_limit),
+            base_axes: [
+                base.column(0).map(T::from_f64),
+                base.column(1).map(T::from_f64),
+                base.column(2).map(T::from_f64),
+            ],
+            base_shift: vector(parameters.base.shift),
+            gravity: base
+                .tr_mul(&nalgebra::Vector3::from(parameters.gravity))
+                .map(T::from_f64),
+            zero_angle: padded(&column(|link| -link.angle_offset)),
+            rotor_inertia: column(|link| link.rotor_inertia),
+            position_range: [
+                column(|link| link.position_range[0]),
+                column(|link| link.position_range[1]),
+            ],
             speed_limit: column(|link| link.speed_limit),
             torque_limit: column(|link| link.torque_limit),
             torque_rate_limit: column(|link| link.torque_rate_limit),
             brake_rate_limit: column(|link| link.brake_rate_limit),
-            parameters: *parameters,
+            damping_postures: parameters.damping_postures,
         }
     }
 
-    /// Largest |q| \[rad\] per joint.
+    /// The shoulder \[m\], base-plate frame: the foot of link 1's frame on the axis of joint 1,
+    /// which no joint moves.
     #[must_use]
-    pub fn position_limit(&self) -> &JointVector<T> {
-        &self.position_limit
+    pub fn shoulder(&self) -> Vector3<T> {
+        let [_, _, axis] = &self.base_axes;
+        let [first, ..] = &self.links;
+        self.base_shift + axis * first.d
+    }
+
+    /// Farthest that `point` can be from the shoulder \[m\]: all lengths between, in one line.
+    #[must_use]
+    pub fn reach(&self, point: &LinkPoint) -> T {
+        let [first, links @ ..] = &self.links;
+        let mut reach = first.a.magnitude();
+        for link in links.iter().take(point.link.number() - 1) {
+            reach += (link.a * link.a + link.d * link.d).square_root();
+        }
+        let offset = Vector3::from(point.offset.map(T::from_f64));
+        reach + offset.dot(&offset).square_root()
+    }
+
+    /// Smallest and largest q \[rad\] per joint.
+    #[must_use]
+    pub fn position_range(&self) -> &[JointVector<T>; 2] {
+        &self.position_range
     }
 
     /// Largest |dq| of the data sheet \[rad/s\] per joint.
@@ -104,12 +148,6 @@ impl<T: Real> ArmModel<T> {
     #[must_use]
     pub fn brake_rate_limit(&self) -> &JointVector<T> {
         &self.brake_rate_limit
-    }
-
-    /// The tables this model was made from.
-    #[must_use]
-    pub fn parameters(&self) -> &ArmParameters {
-        &self.parameters
     }
 }
 

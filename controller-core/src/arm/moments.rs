@@ -36,7 +36,7 @@ impl<T: Real> Motion<T> {
         let [wx, wy, wz] = self.spin;
         let [vx, vy, vz] = self.velocity;
         let mut velocity = [vx + wy * d, vy - wx * d, vz];
-        if EXCHANGE == AxisExchange::OTHER {
+        if AxisExchange::has_length(EXCHANGE) {
             velocity[1] += wz * a;
             velocity[2] -= wy * a;
         }
@@ -143,7 +143,7 @@ impl<T: Real> Moments<T> {
         if d != T::ZERO {
             moved.shift_along_z(d);
         }
-        if EXCHANGE == AxisExchange::OTHER {
+        if AxisExchange::has_length(EXCHANGE) {
             moved.shift_along_x(a);
         }
         moved
@@ -207,7 +207,7 @@ impl<T: Real> Symmetric<T> {
             yz,
             zz,
         } = self;
-        match EXCHANGE {
+        match AxisExchange::turn(EXCHANGE) {
             AxisExchange::NONE => self,
             AxisExchange::RIGHT => Self {
                 xx,
@@ -325,7 +325,7 @@ impl<T: Real> JointWrench<T> {
                 rows[1][moment] = rows[1][moment] + rows[0][force] * d;
             }
         }
-        if EXCHANGE == AxisExchange::OTHER {
+        if AxisExchange::has_length(EXCHANGE) {
             for (moment, force) in [(0, 2), (1, 3)] {
                 rows[1][moment] = rows[1][moment] - rows[2][force] * a;
                 rows[2][moment] = rows[2][moment] + rows[1][force] * a;

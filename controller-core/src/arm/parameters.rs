@@ -1,20 +1,25 @@
-//! The tables of an arm as plain data, and the check that an arm can have them.
+//! The tables of an arm as plain data.
 
-use core::fmt;
-
+use crate::arm::link::{Link, LinkPoint, NamedPoint};
+use crate::arm::pose::Pose;
 use crate::joint::DOF;
 
-use super::link::LinkPoint;
-
 /// Tables of one link and of the joint that moves it. Plain `f64` data.
+///
+/// From DH frame i - 1 to frame i: a turn by q + `offset` about z, a shift `d` along z, a
+/// shift `a` along the new x, a twist `alpha` about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkParameters {
+    /// The maker's name of the joint, as faults and reports say it.
+    pub name: &'static str,
     /// DH length a \[m\], along the new x axis.
     pub a: f64,
     /// DH twist alpha \[rad\], about the new x axis.
     pub alpha: f64,
     /// DH offset d \[m\], along the joint axis.
     pub d: f64,
+    /// DH angle at q = 0 \[rad\].
+    pub angle_offset: f64,
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass \[m\], in the link's own DH frame.
@@ -22,10 +27,17 @@ pub struct LinkParameters {
     /// Inertia about the centre of mass \[kg m2\], axes of the link's own DH
     /// frame, in the order Ixx Ixy Ixz Iyy Iyz Izz.
     pub inertia: [f64; 6],
-    /// Largest |q| \[rad\]; the range is symmetric.
-    pub position_limit: f64,
+    /// Inertia of the rotor as the joint feels it, gear ratio squared \[kg m2\]: added to the
+    /// diagonal of M. 0 where unknown or contained in the bodies.
+    pub rotor_inertia: f64,
+    /// Friction of the joint.
+    pub friction: Friction,
+    /// Smallest and largest q \[rad\].
+    pub position_range: [f64; 2],
     /// Largest |dq| of the data sheet \[rad/s\].
     pub speed_limit: f64,
+    /// What the data sheet allows near the ends of the range, where it says so.
+    pub end_approach: Option<EndApproach>,
     /// Largest |torque| \[Nm\].
     pub torque_limit: f64,
     /// Largest change of the torque while the law runs \[Nm/s\]: a net below what the drives
@@ -35,226 +47,92 @@ pub struct LinkParameters {
     pub brake_rate_limit: f64,
 }
 
+/// Friction torque of a joint, against its speed:
+/// `coulomb` tanh(dq / `smoothing`) + `viscous` dq.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// \[Nm\].
+    pub coulomb: f64,
+    /// \[Nms/rad\].
+    pub viscous: f64,
+    /// Speed \[rad/s\] within which the Coulomb part changes its sign; above 0.
+    pub smoothing: f64,
+}
+
+impl Friction {
+    /// None, or none known.
+    pub const NONE: Self = Self {
+        coulomb: 0.0,
+        viscous: 0.0,
+        smoothing: 0.02,
+    };
+}
+
+/// A bound of the speed that depends on the position, as the FR3 has it: towards an end at
+/// most -`margin` + sqrt(2 `deceleration` x the way to that end).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndApproach {
+    /// Speed that is taken off \[rad/s\].
+    pub margin: f64,
+    /// \[rad/s2\].
+    pub deceleration: f64,
+    /// The ends \[rad\]; they need not be those of the range.
+    pub ends: [f64; 2],
+}
+
+impl LinkParameters {
+    /// Smallest and largest dq \[rad/s\] at the position `q` \[rad\].
+    #[must_use]
+    pub fn speed_range(&self, q: f64) -> [f64; 2] {
+        let Some(approach) = self.end_approach else {
+            return [-self.speed_limit, self.speed_limit];
+        };
+        let towards = |way: f64| {
+            let braked = libm::sqrt((2.0 * approach.deceleration * way).max(0.0));
+            (braked - approach.margin).clamp(0.0, self.speed_limit)
+        };
+        let [start, end] = approach.ends;
+        [-towards(q - start), towards(end - q)]
+    }
+}
+
 /// Tables of a 7-joint arm. Plain `f64` data, usable as a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmParameters {
     /// Short name, as in scenario files.
     pub name: &'static str,
-    /// Height of frame 0 above the mounting plate \[m\].
-    pub base_height: f64,
-    /// Distance of the flange from the origin of frame 7 along z7 \[m\].
-    pub flange: f64,
+    /// Pose of DH frame 0 in the base-plate frame: how the arm is mounted.
+    pub base: Pose,
     /// Gravitational acceleration \[m/s2\], base-plate axes.
     pub gravity: [f64; 3],
     /// The links, base to flange.
     pub links: [LinkParameters; DOF],
+    /// Pose of the flange in DH frame 7.
+    pub flange: Pose,
+    /// Points that have a name.
+    pub points: &'static [NamedPoint],
+    /// Postures \[rad\] among which one is the worst for any diagonal null-space damping, of
+    /// these very tables. Empty: a search when a controller is made takes their place
+    /// ([`crate::law::sampling`]).
+    pub damping_postures: &'static [[f64; DOF]],
 }
 
 impl ArmParameters {
-    /// The shoulder \[m\], base-plate frame: the foot of link 1's frame on the axis of joint 1,
-    /// which no joint moves.
+    /// The origin of the flange, which moves with link 7.
     #[must_use]
-    pub fn shoulder(&self) -> [f64; 3] {
-        [0.0, 0.0, self.base_height + self.links[0].d]
+    pub const fn flange_point(&self) -> LinkPoint {
+        LinkPoint {
+            link: Link::L7,
+            offset: self.flange.shift,
+        }
     }
 
-    /// Farthest that `point` can be from the shoulder \[m\]: all lengths between, in one line.
+    /// The point with this name.
     #[must_use]
-    pub fn reach(&self, point: &LinkPoint) -> f64 {
-        let mut reach = self.links[0].a.abs();
-        for link in self.links.iter().take(point.link.number()).skip(1) {
-            reach += libm::hypot(link.a, link.d);
-        }
-        let [x, y, z] = point.offset;
-        reach + libm::hypot(libm::hypot(x, y), z)
-    }
-}
-
-/// Why parameter tables do not make a model.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
-#[non_exhaustive]
-pub enum ArmError {
-    /// A number is infinite or NaN.
-    NonFinite {
-        /// Link (1..=7), 0 for the arm as a whole.
-        link: usize,
-        /// Name of the parameter.
-        parameter: &'static str,
-        /// The number.
-        value: f64,
-    },
-    /// A number that must be above zero is not.
-    NotPositive {
-        /// Link (1..=7).
-        link: usize,
-        /// Name of the parameter.
-        parameter: &'static str,
-        /// The number.
-        value: f64,
-    },
-    /// The principal moments of inertia break the triangle inequality: no
-    /// distribution of positive mass has this inertia. Then a mass matrix need
-    /// not be positive definite.
-    ImpossibleInertia {
-        /// Link (1..=7).
-        link: usize,
-        /// Smallest leading minor of the matrix of second moments, normalised
-        /// by its trace; must not be below 0.
-        value: f64,
-    },
-}
-
-impl fmt::Display for ArmError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::NonFinite {
-                link,
-                parameter,
-                value,
-            } => {
-                write!(f, "link {link}: {parameter} = {value}; it must be finite")
-            }
-            Self::NotPositive {
-                link,
-                parameter,
-                value,
-            } => {
-                write!(f, "link {link}: {parameter} = {value}; it must be above 0")
-            }
-            Self::ImpossibleInertia { link, value } => write!(
-                f,
-                "link {link}: inertia gives a negative second moment of mass ({value:e} of its \
-                 trace); it must be at least 0 (triangle inequality of the principal moments)"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ArmError {}
-
-/// Second moment of mass about the centre of mass: tr(I)/2 1 - I.
-pub(super) fn second_moment(link: &LinkParameters) -> nalgebra::Matrix3<f64> {
-    let [xx, xy, xz, yy, yz, zz] = link.inertia;
-    let half_trace = (xx + yy + zz) / 2.0;
-    nalgebra::Matrix3::new(
-        half_trace - xx,
-        -xy,
-        -xz,
-        -xy,
-        half_trace - yy,
-        -yz,
-        -xz,
-        -yz,
-        half_trace - zz,
-    )
-}
-
-/// Checks every number of the tables.
-pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
-    let finite =
-        |link, parameter, values: &[f64]| match values.iter().find(|value| !value.is_finite()) {
-            Some(&value) => Err(ArmError::NonFinite {
-                link,
-                parameter,
-                value,
-            }),
-            None => Ok(()),
-        };
-    finite(0, "base_height", &[arm.base_height])?;
-    finite(0, "flange", &[arm.flange])?;
-    finite(0, "gravity", &arm.gravity)?;
-    for (number, link) in (1..).zip(&arm.links) {
-        finite(number, "a", &[link.a])?;
-        finite(number, "alpha", &[link.alpha])?;
-        finite(number, "d", &[link.d])?;
-        finite(number, "com", &link.com)?;
-        finite(number, "inertia", &link.inertia)?;
-        for (parameter, value) in [
-            ("mass", link.mass),
-            ("position_limit", link.position_limit),
-            ("speed_limit", link.speed_limit),
-            ("torque_limit", link.torque_limit),
-            ("torque_rate_limit", link.torque_rate_limit),
-            ("brake_rate_limit", link.brake_rate_limit),
-        ] {
-            finite(number, parameter, &[value])?;
-            if value <= 0.0 {
-                return Err(ArmError::NotPositive {
-                    link: number,
-                    parameter,
-                    value,
-                });
-            }
-        }
-        let value = smallest_minor(&second_moment(link));
-        // Identified bodies sit on the border of the feasible set: allow the
-        // rounding of their printed numbers.
-        if value < -1e-9 {
-            return Err(ArmError::ImpossibleInertia {
-                link: number,
-                value,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// Smallest principal minor, each order normalised by the trace: not negative
-/// if and only if the symmetric matrix is positive semidefinite.
-fn smallest_minor(m: &nalgebra::Matrix3<f64>) -> f64 {
-    let trace = m.trace();
-    if trace <= 0.0 {
-        return -1.0;
-    }
-    let s = m / trace;
-    let minor = |i: usize, j: usize| s[(i, i)] * s[(j, j)] - s[(i, j)] * s[(i, j)];
-    [
-        s.m11,
-        s.m22,
-        s.m33,
-        minor(0, 1),
-        minor(0, 2),
-        minor(1, 2),
-        s.determinant(),
-    ]
-    .into_iter()
-    .fold(f64::INFINITY, f64::min)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::arm::{ArmModel, LWR_IV};
-
-    extern crate std;
-    use std::string::ToString;
-
-    #[test]
-    fn the_lwr_is_a_model_in_both_precisions() {
-        assert!(ArmModel::<f64>::new(&LWR_IV).is_ok());
-        assert!(ArmModel::<f32>::new(&LWR_IV).is_ok());
-    }
-
-    #[test]
-    fn each_impossible_table_is_named() {
-        let error = |change: fn(&mut ArmParameters)| {
-            let mut arm = LWR_IV;
-            change(&mut arm);
-            ArmModel::<f64>::new(&arm).unwrap_err().to_string()
-        };
-        assert_eq!(
-            error(|arm| arm.links[3].mass = 0.0),
-            "link 4: mass = 0; it must be above 0"
-        );
-        assert_eq!(
-            error(|arm| arm.links[6].com[1] = f64::NAN),
-            "link 7: com = NaN; it must be finite"
-        );
-        // A thin rod along z cannot have its largest moment about z.
-        assert!(
-            error(|arm| arm.links[0].inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.3])
-                .contains("triangle inequality")
-        );
+    pub fn point(&self, name: &str) -> Option<LinkPoint> {
+        let mut named = self.points.iter();
+        named
+            .find(|named| named.name == name)
+            .map(|named| named.point)
     }
 }

@@ -35,7 +35,7 @@ fn rotate_about_x<T: Real, E: Entry<T>, const EXCHANGE: u8>(
     [x, y, z]: [E; 3],
     link: &LinkModel<T>,
 ) -> [E; 3] {
-    match EXCHANGE {
+    match AxisExchange::turn(EXCHANGE) {
         AxisExchange::NONE => [x, y, z],
         AxisExchange::RIGHT => [x, -z, y],
         AxisExchange::LEFT => [x, z, -y],
@@ -64,6 +64,12 @@ macro_rules! by_exchange {
             AxisExchange::NONE => $object.$function::<{ AxisExchange::NONE }>($transform),
             AxisExchange::RIGHT => $object.$function::<{ AxisExchange::RIGHT }>($transform),
             AxisExchange::LEFT => $object.$function::<{ AxisExchange::LEFT }>($transform),
+            AxisExchange::RIGHT_WITH_LENGTH => {
+                $object.$function::<{ AxisExchange::RIGHT_WITH_LENGTH }>($transform)
+            }
+            AxisExchange::LEFT_WITH_LENGTH => {
+                $object.$function::<{ AxisExchange::LEFT_WITH_LENGTH }>($transform)
+            }
             _ => $object.$function::<{ AxisExchange::OTHER }>($transform),
         }
     };
@@ -81,7 +87,7 @@ impl<T: Real> JointTransform<'_, T> {
     #[inline(always)]
     pub fn in_child<const EXCHANGE: u8>(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         let (sine, cosine) = (self.link.sin_alpha, self.link.cos_alpha);
-        let back = match EXCHANGE {
+        let back = match AxisExchange::turn(EXCHANGE) {
             AxisExchange::NONE => [x, y, z],
             AxisExchange::RIGHT => [x, z, -y],
             AxisExchange::LEFT => [x, -z, y],

@@ -57,7 +57,7 @@ impl<T: Real> Controller<T> {
         let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
-            levels: Levels::new(&config.tasks, arm.parameters()),
+            levels: Levels::new(&config.tasks, arm),
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
             cycle_s,

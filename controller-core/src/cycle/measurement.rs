@@ -20,7 +20,7 @@ pub struct Measurement<T: Real> {
 /// Whether a measurement can be true.
 ///
 /// # Errors
-/// The first quantity that cannot be true: a position beyond its limit by more
+/// The first quantity that cannot be true: a position beyond its range by more
 /// than [`POSITION_MARGIN`], a speed above [`SPEED_FACTOR`] times the data sheet,
 /// an interval outside [`INTERVAL_FACTORS`] of `cycle_s`, anything not finite.
 pub(crate) fn believe<T: Real>(
@@ -32,11 +32,11 @@ pub(crate) fn believe<T: Real>(
     let margin = T::from_f64(POSITION_MARGIN);
     let factor = T::from_f64(SPEED_FACTOR);
     let [low, high] = INTERVAL_FACTORS.map(|factor| T::from_f64(factor) * cycle_s);
-    let (positions, speeds) = (arm.position_limit(), arm.speed_limit());
+    let ([least, greatest], speeds) = (arm.position_range(), arm.speed_limit());
     // All at once first; which one it is matters only then. False for NaN as well.
     let mut believed = (*interval_s >= low) & (*interval_s <= high);
     for i in 0..DOF {
-        believed &= q[i].magnitude() <= positions[i] + margin;
+        believed &= (q[i] >= least[i] - margin) & (q[i] <= greatest[i] + margin);
         believed &= dq[i].magnitude() <= speeds[i] * factor;
     }
     if believed {
@@ -54,9 +54,9 @@ pub(crate) fn believe<T: Real>(
 #[cold]
 #[inline(never)]
 pub(crate) fn believe_posture<T: Real>(arm: &ArmModel<T>, q: &JointVector<T>) -> Result<(), Fault> {
-    for (index, (&value, &limit)) in (1..).zip(q.iter().zip(arm.position_limit())) {
-        let limit = limit + T::from_f64(POSITION_MARGIN);
-        within(Quantity::Position, index, value, -limit, limit)?;
+    let ([least, greatest], margin) = (arm.position_range(), T::from_f64(POSITION_MARGIN));
+    for (index, (&value, (&min, &max))) in (1..).zip(q.iter().zip(least.iter().zip(greatest))) {
+        within(Quantity::Position, index, value, min - margin, max + margin)?;
     }
     Ok(())
 }

@@ -100,12 +100,13 @@ pub fn external_torque<T: Real>(residual: &JointVector<T>) -> JointVector<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::ArmModel;
     use crate::arm::kinematics::Kinematics;
-    use crate::arm::{ArmModel, LWR_IV};
+    use crate::arm::test_arm::RODS;
 
     #[test]
     fn a_corrected_torque_counts_like_an_applied_one() {
-        let arm = ArmModel::new(&LWR_IV).expect("the built-in arm");
+        let arm = ArmModel::new(&RODS).expect("an arm");
         let state = JointState {
             q: JointVector::from([0.1, 0.6, -0.2, -1.4, 0.3, 1.0, 0.4]),
             dq: JointVector::from([0.3, -0.2, 0.1, 0.4, -0.5, 0.2, 1.0]),

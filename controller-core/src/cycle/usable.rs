@@ -77,15 +77,17 @@ fn usable<T: Real>(
             }
         }
     }
-    let (factor, limits) = (T::from_f64(POSTURE_FACTOR), arm.position_limit());
+    let [least, greatest] = arm.position_range();
+    let beyond = (greatest - least) * T::from_f64((POSTURE_FACTOR - 1.0) / 2.0);
     let mut usable = true;
     for i in 0..DOF {
-        usable &= reference.posture[i].magnitude() <= factor * limits[i];
+        let q_d = reference.posture[i];
+        usable &= (q_d >= least[i] - beyond[i]) & (q_d <= greatest[i] + beyond[i]);
     }
     if usable {
         return Ok(());
     }
-    first_beyond(&reference.posture, &(limits * factor))
+    first_beyond(&reference.posture, &(least - beyond), &(greatest + beyond))
 }
 
 /// Whether `vector` is at most `most` long.
@@ -119,9 +121,14 @@ fn too_long<T: Real>(quantity: Quantity, index: u8, vector: &Vector3<T>, most: T
 
 #[cold]
 #[inline(never)]
-fn first_beyond<T: Real>(posture: &JointVector<T>, limits: &JointVector<T>) -> Result<(), Fault> {
-    for (joint, (&value, &limit)) in (1..).zip(posture.iter().zip(limits)) {
-        within(Quantity::PostureReference, joint, value, -limit, limit)?;
+fn first_beyond<T: Real>(
+    posture: &JointVector<T>,
+    least: &JointVector<T>,
+    greatest: &JointVector<T>,
+) -> Result<(), Fault> {
+    for (joint, (&value, (&min, &max))) in (1..).zip(posture.iter().zip(least.iter().zip(greatest)))
+    {
+        within(Quantity::PostureReference, joint, value, min, max)?;
     }
     Ok(())
 }

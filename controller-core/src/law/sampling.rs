@@ -4,17 +4,24 @@
 //! a mode of M^-1 D with the rate lambda is multiplied by 1 - h lambda every
 //! cycle, which is unstable for h lambda > 2, and for h lambda > 1 where a cycle
 //! of dead time lies between measurement and torque ([`bound`]). The wrist of the arm is so
-//! light that ordinary values exceed this. M depends on the posture, so what is held
-//! to the bound is the largest rate over a fixed set of postures that contains, for
-//! the damping of each single joint and for the reference damping, the worst
-//! one found by a search over the whole joint range.
+//! light that ordinary values exceed this. M depends on the posture, so the
+//! bound is taken as the largest rate over the ranges of the joints. A table may bring postures
+//! that contain, for the damping of each single joint and for ordinary dampings, the worst
+//! one found by a search over the whole joint range; without them the search runs for the
+//! very damping when a controller is made (`search`). It takes at most some 7,000 mass
+//! matrices, 40 ms on a workstation; a table for a microcontroller had better bring postures.
+//!
+//! A search proves nothing. What other searches find is above the sampling bound by 0.3 % at
+//! most for the arms of the crate `arms`, bare and with 2 kg (`tests/tests/damping_search.rs`).
 
-use nalgebra::Matrix4;
-
-use crate::arm::{ArmModel, LinkModel};
-use crate::joint::{DOF, JointMatrix, zeros};
-use crate::linalg::{Cholesky, largest_eigenpair};
+use crate::arm::ArmModel;
+use crate::joint::JointMatrix;
 use crate::real::Real;
+
+mod mode;
+mod search;
+
+pub use mode::{DampingRate, mode_at};
 
 /// What h lambda must stay below with `dead_cycles` cycles between measurement
 /// and torque: 2 cos(d pi / (2 d + 1)), where z^(d+1) - z^d + h lambda = 0 leaves
@@ -26,208 +33,18 @@ pub fn bound(dead_cycles: u8) -> f64 {
     2.0 * cosine
 }
 
-/// Postures \[deg\] at which the damping is checked: the worst one found for the
-/// reference damping, for the damping of each single joint and for equal
-/// damping of all, then folded and wrist-aligned ones for damping matrices of
-/// other shapes. The first joint has no influence. `tests/tests/damping.rs`
-/// confirms on random postures that none is worse.
-const POSTURES_DEG: [[f64; DOF]; 12] = [
-    [0.0, 0.03, -6.85, -0.91, 1.38, 1.99, -2.53],
-    [0.0, 0.01, 0.72, 0.1, -0.3, -2.72, -2.35],
-    [0.0, 0.03, 0.0, 0.11, -0.29, -2.77, -2.31],
-    [0.0, 0.03, -7.87, -0.76, 3.01, -0.72, -170.0],
-    [0.0, 2.71, 1.91, 0.09, -0.54, -1.36, -2.83],
-    [0.0, -0.04, -7.19, -0.35, -4.01, 1.2, 32.66],
-    [0.0, 2.77, 1.94, 0.2, -0.28, -2.46, -0.05],
-    [0.0, -0.12, 2.3, 0.59, -3.15, 0.14, 6.17],
-    [0.0; DOF],
-    [0.0, 60.0, 0.0, 120.0, 0.0, 0.0, 0.0],
-    [0.0, 0.0, 0.0, -90.0, 0.0, 90.0, 0.0],
-    [0.0, 90.0, 90.0, 90.0, 90.0, 0.0, 90.0],
-];
-
-/// The fastest mode of M^-1 D.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DampingRate {
-    /// lambda_max(L^-1 D L^-T) \[1/s\].
-    pub rate: f64,
-    /// The joint, 1..=7, that dissipates most in this mode.
-    pub joint: usize,
-    /// The posture \[rad\] where it occurs.
-    pub posture: [f64; DOF],
-}
-
-/// The fastest mode over the set of postures.
+/// The fastest mode over the postures of the arm, or by the search where it has none.
 #[must_use]
 pub fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
-    let mut fastest = DampingRate {
-        rate: 0.0,
-        joint: 1,
-        posture: [0.0; DOF],
-    };
-    // By reference: a copy of the set would lie on the stack.
-    for posture in &POSTURES_DEG {
-        let mode = mode_at(arm, damping, posture.map(f64::to_radians));
+    if arm.damping_postures.is_empty() {
+        return search::fastest_mode(arm, damping);
+    }
+    let mut fastest = mode::NONE;
+    for posture in arm.damping_postures {
+        let mode = mode_at(arm, damping, *posture);
         if mode.rate > fastest.rate {
             fastest = mode;
         }
     }
     fastest
-}
-
-/// The fastest mode at one posture \[rad\].
-#[must_use]
-pub fn mode_at<T: Real>(
-    arm: &ArmModel<T>,
-    damping: &JointMatrix<T>,
-    posture: [f64; DOF],
-) -> DampingRate {
-    let factor = mass_factor(arm, &posture);
-    let (rate, joint) = fastest_of(&factor, damping);
-    DampingRate {
-        rate: rate.to_f64(),
-        joint,
-        posture,
-    }
-}
-
-/// L of M = L L^T at a posture \[rad\]. Behind a call, as [`fastest_of`]: their work
-/// sets take turns on the stack instead of lying there together.
-#[inline(never)]
-fn mass_factor<T: Real>(arm: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T> {
-    let mut mass_matrix = zeros();
-    set_mass_matrix(arm, posture, &mut mass_matrix);
-    let mut factor = Cholesky::new();
-    factor.update(&mass_matrix);
-    factor
-}
-
-/// M(q) \[kg m2\], its lower triangle, by homogeneous coordinates: few instructions in
-/// loops where [`crate::arm::dynamics`] has fast ones in a row, which would have to be
-/// in the flash a second time.
-///
-/// With P the integral of p p^T dm over all links behind joint i, p = (x, y, z, 1) in
-/// the frame of the joint, unit speed of it gives H, the integral of p v^T dm with
-/// v = (-y, x, 0, 0). Carried to the frame of joint j, H has the moment M_ij of the
-/// momentum about z as H_xy - H_yx.
-#[inline(never)]
-fn set_mass_matrix<T: Real>(
-    arm: &ArmModel<T>,
-    posture: &[f64; DOF],
-    mass_matrix: &mut JointMatrix<T>,
-) {
-    let mut group = Matrix4::zeros();
-    for i in (0..DOF).rev() {
-        let [x, y, z, one] = &arm.links[i].moments;
-        group += Matrix4::from_columns(&[*x, *y, *z, *one]);
-        let mut velocity_moment = Matrix4::zeros();
-        velocity_moment.set_column(0, &-group.column(1));
-        velocity_moment.set_column(1, &group.column(0));
-        mass_matrix[(i, i)] = velocity_moment.m12 - velocity_moment.m21;
-        for j in (0..i).rev() {
-            velocity_moment = in_parent(&arm.links[j], posture[j + 1], &velocity_moment);
-            mass_matrix[(i, j)] = velocity_moment.m12 - velocity_moment.m21;
-        }
-        if i > 0 {
-            group = in_parent(&arm.links[i - 1], posture[i], &group);
-        }
-    }
-}
-
-/// A X A^T with A from the frame of a joint to that of the joint before it: turned
-/// about z by its `angle` \[rad\], then the twist and lengths of the `link` between.
-#[inline(never)]
-fn in_parent<T: Real>(link: &LinkModel<T>, angle: f64, x: &Matrix4<T>) -> Matrix4<T> {
-    let (sine, cosine) = T::from_f64(angle).sine_cosine();
-    let (zero, one) = (T::ZERO, T::ONE);
-    let (sin_alpha, cos_alpha) = (link.sin_alpha, link.cos_alpha);
-    let transform = Matrix4::new(
-        cosine,
-        -sine,
-        zero,
-        link.a,
-        sine * cos_alpha,
-        cosine * cos_alpha,
-        -sin_alpha,
-        zero,
-        sine * sin_alpha,
-        cosine * sin_alpha,
-        cos_alpha,
-        link.d,
-        zero,
-        zero,
-        zero,
-        one,
-    );
-    transform * x * transform.transpose()
-}
-
-/// lambda_max(L^-1 D L^-T) \[1/s\], and the joint, 1..=7, that dissipates most in
-/// its mode.
-#[inline(never)]
-fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, usize) {
-    let (rate, whitened) = largest_eigenpair(&factor.whiten(damping));
-    let mode = factor.solve_upper(&whitened);
-    let power = mode.component_mul(&(damping * mode));
-    let mut joint = 0;
-    for i in 1..DOF {
-        if power[i] > power[joint] {
-            joint = i;
-        }
-    }
-    (rate, joint + 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::arm::dynamics::Dynamics;
-    use crate::arm::kinematics::Kinematics;
-    use crate::arm::{ArmParameters, LWR_IV};
-    use crate::joint::{JointState, JointVector};
-
-    /// Largest difference from the mass matrix of the cycle, relative to its size.
-    fn difference<T: Real>(parameters: &ArmParameters) -> f64 {
-        let arm = &ArmModel::<T>::new(parameters).expect("an arm");
-        let mut worst = 0.0f64;
-        for (number, posture) in (1..).zip(&POSTURES_DEG) {
-            let mut posture = posture.map(f64::to_radians);
-            posture[0] = 0.3 * f64::from(number);
-            posture[6] -= 0.2 * f64::from(number);
-            let mut own = zeros();
-            set_mass_matrix(arm, &posture, &mut own);
-            let state = JointState {
-                q: JointVector::from(posture.map(T::from_f64)),
-                dq: zeros(),
-            };
-            let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
-            kinematics.update(arm, &state);
-            dynamics.update(arm, &kinematics, &state);
-            let cycle = dynamics.mass_matrix;
-            for i in 0..DOF {
-                for j in 0..=i {
-                    let size = (cycle[(i, i)] * cycle[(j, j)]).to_f64();
-                    let off = (own[(i, j)] - cycle[(i, j)]).to_f64();
-                    worst = worst.max(off.abs() / libm::sqrt(size));
-                }
-            }
-        }
-        worst
-    }
-
-    #[test]
-    fn the_mass_matrix_of_the_postures_is_that_of_the_cycle() {
-        // With lengths and twists that are not those of right-angled arms too.
-        let mut skew = LWR_IV;
-        for (link, number) in skew.links.iter_mut().zip(1..) {
-            link.a += 0.02 * f64::from(number);
-            link.alpha += 0.1 * f64::from(number);
-        }
-        // Entries that cancel are some ten times smaller than their terms; a few
-        // dozen roundings.
-        for arm in [&LWR_IV, &skew] {
-            assert!(difference::<f64>(arm) < 1e3 * f64::EPSILON);
-            assert!(difference::<f32>(arm) < 1e3 * f64::from(f32::EPSILON));
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::{Axes, Target, orientation};
 use crate::arm::kinematics::{Kinematics, PointMotion};
-use crate::arm::{ArmParameters, Link, LinkPoint};
+use crate::arm::{ArmModel, Link, LinkPoint};
 use crate::error::{ConfigError, Gain};
 use crate::gain::{self, diagonal};
 use crate::joint::{Matrix3, Vector3, zeros};
@@ -202,7 +202,7 @@ pub(crate) struct Levels<T: Real> {
 }
 
 impl<T: Real> Levels<T> {
-    pub fn new(set: &TaskSet, arm: &ArmParameters) -> Self {
+    pub fn new(set: &TaskSet, arm: &ArmModel<T>) -> Self {
         let mut levels = Self {
             levels: [Level {
                 tracked: LevelPoint::Orientation(Link::L7),
@@ -212,14 +212,14 @@ impl<T: Real> Levels<T> {
                 damping: zeros(),
             }; MAX_LEVELS],
             count: set.count,
-            shoulder: Vector3::from(arm.shoulder().map(T::from_f64)),
+            shoulder: arm.shoulder(),
         };
         for (level, task) in levels.levels.iter_mut().zip(set.tasks()) {
             level.axes = task.axes;
             level.tracked = match task.tracked {
                 Tracked::Position(LinkPoint { link, offset }) => {
                     let reach = arm.reach(&LinkPoint { link, offset });
-                    level.reach = T::from_f64(reach + REACH_MARGIN_M);
+                    level.reach = reach + T::from_f64(REACH_MARGIN_M);
                     LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
                 }
                 Tracked::Orientation(link) => LevelPoint::Orientation(link),

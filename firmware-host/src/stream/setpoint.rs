@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use arms::LWR_IV;
 use cell::ranges::{QUATERNION_NORM, Range};
-use controller_core::arm::LWR_IV_POINTS;
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
 use controller_core::task::Tracked;
@@ -193,7 +193,7 @@ impl fmt::Display for Level<'_> {
         write!(f, "level {} ", self.number)?;
         match &self.task.tracked {
             Tracked::Position(point) => {
-                match LWR_IV_POINTS.iter().find(|named| named.point == *point) {
+                match LWR_IV.points.iter().find(|named| named.point == *point) {
                     Some(named) => write!(f, "(position of {})", named.name),
                     None => write!(f, "(position of a point of link {})", point.link.number()),
                 }
@@ -206,7 +206,7 @@ impl fmt::Display for Level<'_> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+    use arms::{LWR_IV, LWR_IV_FLANGE};
     use controller_core::{Axes, Link, LinkPoint, TaskGains};
 
     const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);

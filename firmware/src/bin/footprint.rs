@@ -8,7 +8,7 @@
 mod core_of {
     use core::hint::black_box;
 
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
     use controller_core::cycle::record::Recorder;
     use controller_core::joint::zeros;
     use controller_core::real::Real;

@@ -8,7 +8,7 @@
 
 use core::hint::black_box;
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::cycle::record::Recorder;
 use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
 use controller_core::{

@@ -60,12 +60,12 @@ fn drift(experiment: &Experiment, controller: &Controller<f64>) -> io::Result<Op
         ..experiment.clone()
     };
     free.scenario.duration_s = free.scenario.duration_s.min(AHEAD_S);
-    let limits = controller.arm().position_limit();
+    let [least, greatest] = controller.arm().position_range();
     let mut beyond = None;
     let look = |sample: &Sample| {
-        let joints = sample.state.q.iter().zip(limits);
-        let left = joints.enumerate().find(|(_, (q, limit))| q.abs() > **limit);
-        beyond = beyond.or(left.map(|(index, _)| (index + 1, sample.t_s)));
+        let q = &sample.state.q;
+        let left = (0..q.len()).find(|&i| q[i] < least[i] || q[i] > greatest[i]);
+        beyond = beyond.or(left.map(|index| (index + 1, sample.t_s)));
         Ok(())
     };
     let summary = free.run(controller, look, |_| ())?;

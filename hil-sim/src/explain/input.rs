@@ -1,6 +1,7 @@
 //! The state to explain, as JSON.
 
-use controller_core::arm::{ArmParameters, LWR_IV};
+use arms::LWR_IV;
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, Vector3};
 use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
@@ -121,8 +122,8 @@ impl Input {
             return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
         }
         for (joint, (&q, link)) in (1..).zip(self.q.iter().zip(&LWR_IV.links)) {
-            let limit = link.position_limit;
-            Range::new(-limit, limit).check(format_args!("q of joint {joint}"), q)?;
+            let [min, max] = link.position_range;
+            Range::new(min, max).check(format_args!("q of joint {joint}"), q)?;
         }
         if let Some(name) = &self.controller {
             TorqueLaw::from_name(name)?;

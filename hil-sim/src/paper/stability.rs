@@ -15,7 +15,7 @@
 //!   q~* the distance from the integrated posture (51), coupled form; its
 //!   derivative is -n^T D n.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::cycle::stages::StageName;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointVector, Vector3};

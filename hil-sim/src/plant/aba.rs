@@ -124,11 +124,11 @@ impl Wrench {
 
 impl PlantModel {
     /// Joint accelerations \[rad/s2\] at posture `q` \[rad\] and speed `dq`
-    /// \[rad/s\]: solves (M + diag(armature)) ddq = torque - C dq - g.
+    /// \[rad/s\]: solves (M + diag(armature)) ddq = torque - C dq - g; rotors are in M.
     ///
     /// `torque` \[Nm\] is everything along +q: motor minus friction plus J^T F of
-    /// contact forces. `armature` \[kg m2\] is added to the diagonal of M: zero,
-    /// a rotor inertia, or h dF/d(dq) of friction treated implicitly over a
+    /// contact forces. `armature` \[kg m2\] is added to the diagonal of M: zero
+    /// or h dF/d(dq) of friction treated implicitly over a
     /// step h.
     #[must_use]
     pub fn forward_dynamics(
@@ -173,7 +173,8 @@ impl PlantModel {
                 angular: link.axis,
                 linear: link.lever,
             });
-            joint.mobility = 1.0 / (joint.column.along(&link.axis, &link.lever) + armature[i]);
+            let felt = joint.column.along(&link.axis, &link.lever) + link.rotor_inertia;
+            joint.mobility = 1.0 / (felt + armature[i]);
             joint.torque = torque[i] - load.along(&link.axis, &link.lever);
             if i == 0 {
                 break;
@@ -197,7 +198,7 @@ impl PlantModel {
         // Outward: gravity is a base that accelerates upwards.
         let mut acceleration = Twist {
             angular: Vector3::zeros(),
-            linear: -self.gravity,
+            linear: -self.base_gravity,
         };
         let mut ddq = JointVector::zeros();
         for (i, (link, joint)) in self.links.iter().zip(&joints).enumerate() {
@@ -225,7 +226,7 @@ impl Wrench {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
     use controller_core::joint::JointState;
 
     /// Two unit point masses on massless unit links with parallel axes, the

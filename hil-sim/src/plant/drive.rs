@@ -127,7 +127,7 @@ mod tests {
     use super::super::noise::{Rng, stream};
     use super::super::stiction::BREAK_AWAY;
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     const H: f64 = 0.25e-3;
     const POSTURE: [f64; DOF] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];

@@ -98,7 +98,7 @@ impl Impedance {
 mod tests {
     use super::super::{Plant, PlantKind, PlantOptions};
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     const POSTURE: [f64; 7] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];
     const NONE: JointVector<f64> = zeros();

@@ -117,7 +117,7 @@ pub(super) fn implicit(
 mod tests {
     use super::super::options::PlantOptions;
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     /// One cycle of rigid joints with smooth friction.
     fn rough(

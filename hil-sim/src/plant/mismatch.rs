@@ -34,7 +34,8 @@ pub fn mismatched(parameters: &ArmParameters, rng: &mut Rng) -> ArmParameters {
 mod tests {
     use super::super::noise::stream;
     use super::*;
-    use controller_core::arm::{ArmModel, LWR_IV};
+    use arms::LWR_IV;
+    use controller_core::arm::ArmModel;
 
     #[test]
     fn errors_lie_within_their_bounds_and_the_arm_stays_possible() {

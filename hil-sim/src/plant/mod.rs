@@ -217,7 +217,7 @@ impl Plant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     #[test]
     fn the_ideal_plant_measures_its_true_state_and_ignores_the_seed() {

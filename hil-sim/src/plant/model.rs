@@ -17,8 +17,13 @@ use controller_core::real::Real;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantModel {
     pub(super) links: [Body; DOF],
-    pub(super) gravity: Vector3<f64>,
-    base_height: f64,
+    /// Gravitational acceleration \[m/s2\], base-plate axes.
+    gravity: Vector3<f64>,
+    /// The same in axes of frame 0.
+    pub(super) base_gravity: Vector3<f64>,
+    /// Frame 0 in the base-plate frame.
+    base_rotation: Matrix3<f64>,
+    base_shift: Vector3<f64>,
 }
 
 /// One link as a body, and the joint that moves it, in the link's own DH frame.
@@ -26,6 +31,8 @@ pub struct PlantModel {
 pub(super) struct Body {
     a: f64,
     d: f64,
+    /// q \[rad\] at which the DH angle is 0.
+    zero_angle: f64,
     cos_alpha: f64,
     sin_alpha: f64,
     /// From the previous origin to this one \[m\].
@@ -40,6 +47,8 @@ pub(super) struct Body {
     pub first_moment: Vector3<f64>,
     /// About this origin \[kg m2\].
     pub inertia: Matrix3<f64>,
+    /// Of the rotor, as the joint feels it \[kg m2\].
+    pub rotor_inertia: f64,
 }
 
 /// Velocity of a link: of its rotation and of its origin, link axes.
@@ -65,6 +74,7 @@ impl Body {
         Self {
             a: link.a,
             d: link.d,
+            zero_angle: -link.angle_offset,
             cos_alpha,
             sin_alpha,
             reach,
@@ -74,13 +84,20 @@ impl Body {
             com,
             first_moment: com * link.mass,
             inertia: central + offset * link.mass,
+            rotor_inertia: link.rotor_inertia,
         }
+    }
+
+    /// Of the DH angle.
+    #[inline]
+    fn sine_cosine(&self, q: f64) -> (f64, f64) {
+        (q - self.zero_angle).sine_cosine()
     }
 
     /// R: takes link axes to those of the previous link.
     #[inline]
     pub fn rotation(&self, q: f64) -> Matrix3<f64> {
-        let (s, c) = q.sine_cosine();
+        let (s, c) = self.sine_cosine(q);
         let (sa, ca) = (self.sin_alpha, self.cos_alpha);
         Matrix3::new(c, -s * ca, s * sa, s, c * ca, -c * sa, 0.0, sa, ca)
     }
@@ -139,10 +156,15 @@ impl PlantModel {
     /// mass and inertia.
     #[must_use]
     pub fn new(parameters: &ArmParameters) -> Self {
+        // nalgebra takes columns.
+        let base_rotation = Matrix3::from(parameters.base.rotation).transpose();
+        let gravity = Vector3::from(parameters.gravity);
         Self {
             links: parameters.links.map(|link| Body::new(&link)),
-            gravity: Vector3::from(parameters.gravity),
-            base_height: parameters.base_height,
+            gravity,
+            base_gravity: base_rotation.tr_mul(&gravity),
+            base_rotation,
+            base_shift: parameters.base.shift.into(),
         }
     }
 
@@ -189,6 +211,7 @@ impl PlantModel {
             twist = link.twist(&twist, &link.rotation(state.q[i]), state.dq[i]);
             let (angular, linear) = link.momentum(&twist);
             twice += twist.angular.dot(&angular) + twist.linear.dot(&linear);
+            twice += link.rotor_inertia * state.dq[i] * state.dq[i];
         }
         0.5 * twice
     }
@@ -196,8 +219,8 @@ impl PlantModel {
     /// Potential energy of gravity \[J\], 0 with all mass at the mounting plate.
     #[must_use]
     pub fn potential_energy(&self, q: &JointVector<f64>) -> f64 {
-        let mut rotation = Matrix3::identity();
-        let mut origin = Vector3::new(0.0, 0.0, self.base_height);
+        let mut rotation = self.base_rotation;
+        let mut origin = self.base_shift;
         let mut energy = 0.0;
         for (i, link) in self.links.iter().enumerate() {
             rotation *= link.rotation(q[i]);
@@ -222,6 +245,7 @@ impl PlantModel {
     pub(crate) fn weightless(&self) -> Self {
         Self {
             gravity: Vector3::zeros(),
+            base_gravity: Vector3::zeros(),
             ..self.clone()
         }
     }
@@ -230,13 +254,13 @@ impl PlantModel {
         let mut chain = Chain {
             axes: [Vector3::zeros(); DOF],
             origins: [Vector3::zeros(); DOF],
-            rotation: Matrix3::identity(),
-            origin: Vector3::new(0.0, 0.0, self.base_height),
+            rotation: self.base_rotation,
+            origin: self.base_shift,
         };
         for (i, link) in self.links.iter().enumerate().take(link) {
             chain.axes[i] = chain.rotation.column(2).into_owned();
             chain.origins[i] = chain.origin;
-            let (s, c) = q[i].sine_cosine();
+            let (s, c) = link.sine_cosine(q[i]);
             chain.origin += chain.rotation * Vector3::new(link.a * c, link.a * s, link.d);
             chain.rotation *= link.rotation(q[i]);
         }
@@ -247,7 +271,7 @@ impl PlantModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     #[test]
     fn the_upright_arm_reaches_straight_up() {
@@ -271,7 +295,7 @@ mod tests {
         for link in &mut arm.links {
             (link.a, link.alpha, link.d) = (0.0, 0.0, 0.0);
         }
-        arm.base_height = 0.0;
+        arm.base = controller_core::arm::Pose::IDENTITY;
         arm.links[0].a = 1.0;
         arm.links[1].a = 1.0;
         let model = PlantModel::new(&arm);

@@ -34,17 +34,17 @@ impl ArmSnapshot {
     #[must_use]
     pub fn new(t_s: f64, model: &PlantModel, state: &JointState<f64>, scenario: &Scenario) -> Self {
         let arm = scenario.arm();
-        let centre = |link: usize, z: f64| {
-            let (x, _) = model.point(state, link, &[0.0, 0.0, z].into());
+        let centre = |link: usize, offset: [f64; 3]| {
+            let (x, _) = model.point(state, link, &offset.into());
             [x.x, x.y, x.z]
         };
         Self {
             t_s,
             joints: [
-                [0.0, 0.0, arm.base_height],
-                centre(3, 0.0),
-                centre(5, 0.0),
-                centre(7, arm.flange),
+                arm.base.shift,
+                centre(3, [0.0; 3]),
+                centre(5, [0.0; 3]),
+                centre(7, arm.flange.shift),
             ],
         }
     }

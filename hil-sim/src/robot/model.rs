@@ -30,7 +30,7 @@ impl RobotModel {
         Self {
             weightless: arm.weightless(),
             arm,
-            flange: Vector3::new(0.0, 0.0, parameters.flange),
+            flange: parameters.flange.shift.into(),
         }
     }
 
@@ -111,7 +111,7 @@ impl RobotModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use controller_core::arm::LWR_IV;
+    use arms::LWR_IV;
 
     const STATE: JointState<f64> = JointState {
         q: JointVector::from_array_storage(nalgebra::ArrayStorage([[

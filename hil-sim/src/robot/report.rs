@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_frame_after_another_gives_the_second() {
-        let model = RobotModel::new(&controller_core::arm::LWR_IV);
+        let model = RobotModel::new(&arms::LWR_IV);
         let first = model.frame(&JointVector::repeat(0.3));
         let second = model.frame(&JointVector::repeat(0.4));
         let step = relative(&first, &second);

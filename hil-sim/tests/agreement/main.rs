@@ -127,11 +127,13 @@ fn run(case: &Case, measurement: MeasurementKind) -> Outcome {
         &controller,
         |sample| {
             for (joint, link) in links.iter().enumerate() {
-                let (q, dq) = (sample.state.q[joint].abs(), sample.state.dq[joint].abs());
+                let (q, dq) = (sample.state.q[joint], sample.state.dq[joint].abs());
+                let [min, max] = link.position_range;
+                let (away, half) = ((q - (min + max) / 2.0).abs(), (max - min) / 2.0);
                 let shares = [
                     dq / (SPEED_FACTOR * link.speed_limit),
-                    q / link.position_limit,
-                    q / (link.position_limit + POSITION_MARGIN),
+                    away / half,
+                    away / (half + POSITION_MARGIN),
                 ];
                 bounds = std::array::from_fn(|i| bounds[i].max(shares[i]));
             }

@@ -1,6 +1,6 @@
 //! A link has an orientation, a point has none.
 
-use controller_core::arm::LWR_IV_FLANGE;
+use arms::LWR_IV_FLANGE;
 use controller_core::{Axes, Task, TaskGains};
 
 fn main() {

@@ -1,6 +1,6 @@
 //! A controller as constant data, a state in static memory, one cycle.
 
-use controller_core::arm::{LWR_IV, LWR_IV_FLANGE};
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::{
     Axes, ConfigError, Controller, ControllerConfig, Measurement, NullSpace, Reference, State,
     Target, Task, TaskGains, TaskSet,

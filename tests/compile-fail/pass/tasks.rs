@@ -1,6 +1,6 @@
 //! Tasks as constants, and how they become a set.
 
-use controller_core::arm::LWR_IV_FLANGE;
+use arms::LWR_IV_FLANGE;
 use controller_core::{Axes, ConfigError, Link, LinkPoint, Task, TaskGains, TaskSet};
 
 const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);

@@ -1,7 +1,8 @@
 //! A controller of either precision around the ideal plant.
 
+use arms::LWR_IV;
 use cell::names::PlantKind;
-use controller_core::arm::{ArmParameters, LWR_IV};
+use controller_core::arm::ArmParameters;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::real::Real;
@@ -44,6 +45,7 @@ pub fn no_contact(_: f64, _: &PlantModel, _: &JointState<f64>) -> JointVector<f6
 /// Controller, plant and references.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop<T: Real> {
+    arm: ArmParameters,
     /// Of the core.
     pub controller: Controller<T>,
     /// Of the core.
@@ -102,6 +104,7 @@ impl<T: Real> ClosedLoop<T> {
             }
         }
         Self {
+            arm: *arm,
             controller,
             state: State::new(),
             origins,
@@ -116,8 +119,7 @@ impl<T: Real> ClosedLoop<T> {
     /// Starts elsewhere \[rad\] at rest; references and q_d stay.
     #[must_use]
     pub fn from(mut self, start: JointVector<f64>) -> Self {
-        let arm = self.controller.arm().parameters();
-        self.plant = Plant::new(PlantKind::Ideal, arm, start, self.config.cycle_s, 1);
+        self.plant = Plant::new(PlantKind::Ideal, &self.arm, start, self.config.cycle_s, 1);
         self
     }
 

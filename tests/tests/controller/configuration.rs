@@ -1,7 +1,8 @@
 //! Every configuration that cannot be is refused with one line that says what
 //! would be allowed.
 
-use controller_core::arm::{ArmError, LWR_IV};
+use arms::LWR_IV;
+use controller_core::arm::ArmError;
 use controller_core::gain::diagonal;
 use controller_core::joint::Vector3;
 use controller_core::law::null_space::NullDamping;

@@ -1,6 +1,6 @@
 //! A level that holds: where it was in the first cycle of holding, whatever pushes it.
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::fault::LimitKind;
 use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use controller_core::ranges::HOLD_S;

@@ -33,7 +33,7 @@ fn bounds_are_exact<T: Real>(next_up: fn(T) -> T) {
         );
     };
     for joint in 0..7 {
-        let position = model.position_limit()[joint] + T::from_f64(POSITION_MARGIN);
+        let position = model.position_range()[1][joint] + T::from_f64(POSITION_MARGIN);
         let speed = model.speed_limit()[joint] * T::from_f64(SPEED_FACTOR);
         let number = joint as u8 + 1;
         for sign in [T::ONE, -T::ONE] {

@@ -1,7 +1,7 @@
 //! Errata that show when the loop is closed around the ideal plant.
 
+use arms::LWR_IV;
 use controller_core::Controller;
-use controller_core::arm::LWR_IV;
 use controller_core::cycle::observer::Observer;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointState, JointVector, Vector3};
@@ -176,7 +176,7 @@ fn erratum_5_eq_30_starts_from_the_present_momentum() {
 fn erratum_8_the_integrated_posture_of_eq_51_drifts() {
     let mut free = LWR_IV;
     for link in &mut free.links {
-        link.position_limit = 12.0;
+        link.position_range = [-12.0, 12.0];
     }
     let travel = |posture_kind| {
         let mut config = two_level();

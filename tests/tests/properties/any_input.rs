@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use controller_core::arm::LWR_IV;
+use arms::LWR_IV;
 use controller_core::fault::{FaultKind, Mode};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
@@ -123,7 +123,7 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
     // Limits in T: a number within rounding of one may fall on either side, and
     // random numbers do not.
     limits.into_iter().all(|(i, link)| {
-        measurement.q[i].to_f64().abs() <= link.position_limit + 0.2
+        measurement.q[i].to_f64().abs() <= link.position_range[1] + 0.2
             && measurement.dq[i].to_f64().abs() <= 3.0 * link.speed_limit
     }) && (0.001..=0.04).contains(&h)
 }

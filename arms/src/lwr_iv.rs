@@ -11,18 +11,73 @@
 //! Only M(q), C(q, dq) and g(q) are meaningful: single masses and centres of
 //! mass are not identified (27 free directions). There is no rotor inertia and
 //! no joint elasticity. M77 = 1.584e-4 kg m2, which bounds the damping of
-//! joint 7 (see [`crate::law::sampling`]).
+//! joint 7 (see [`controller_core::law::sampling`]).
 
 use core::f64::consts::FRAC_PI_2;
 
-use crate::joint::DOF;
+use controller_core::joint::DOF;
 
-use super::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint};
+use controller_core::arm::{
+    ArmParameters, Friction, Link, LinkParameters, LinkPoint, NamedPoint, Pose,
+};
+
+/// The flange of the LWR IV+: 0.078 m beyond the wrist along z7.
+pub const LWR_IV_FLANGE: LinkPoint = LinkPoint {
+    link: Link::L7,
+    offset: FLANGE.shift,
+};
+
+const FLANGE: Pose = Pose::at([0.0, 0.0, 0.078]);
+
+/// Null-space stiffness K_q \[Nm/rad\] of the reference experiments on this arm.
+pub const LWR_IV_STIFFNESS: [f64; DOF] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2];
+
+/// Null-space damping D \[Nms/rad\] of the reference experiments on this arm.
+pub const LWR_IV_DAMPING: [f64; DOF] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
+
+/// No limit of the arm: a tighter one behind the law would take from it what it brakes with
+/// near singularities \[Nm/s\].
+const TORQUE_RATE: f64 = 10e3;
+
+/// A limit of 176 Nm within two milliseconds \[Nm/s\].
+const BRAKE_RATE: f64 = 100e3;
+
+/// Postures \[deg\] at which a null-space damping is checked: the worst one found for the
+/// reference damping, for the damping of each single joint and for equal
+/// damping of all, then folded and wrist-aligned ones for damping matrices of
+/// other shapes. The first joint has no influence. `tests/tests/damping.rs`
+/// confirms on random postures that none is worse.
+const DAMPING_POSTURES_DEG: [[f64; DOF]; 12] = [
+    [0.0, 0.03, -6.85, -0.91, 1.38, 1.99, -2.53],
+    [0.0, 0.01, 0.72, 0.1, -0.3, -2.72, -2.35],
+    [0.0, 0.03, 0.0, 0.11, -0.29, -2.77, -2.31],
+    [0.0, 0.03, -7.87, -0.76, 3.01, -0.72, -170.0],
+    [0.0, 2.71, 1.91, 0.09, -0.54, -1.36, -2.83],
+    [0.0, -0.04, -7.19, -0.35, -4.01, 1.2, 32.66],
+    [0.0, 2.77, 1.94, 0.2, -0.28, -2.46, -0.05],
+    [0.0, -0.12, 2.3, 0.59, -3.15, 0.14, 6.17],
+    [0.0; DOF],
+    [0.0, 60.0, 0.0, 120.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0, -90.0, 0.0, 90.0, 0.0],
+    [0.0, 90.0, 90.0, 90.0, 90.0, 0.0, 90.0],
+];
+
+/// The same in \[rad\].
+const DAMPING_POSTURES: [[f64; DOF]; 12] = {
+    let mut postures = DAMPING_POSTURES_DEG;
+    let mut n = 0;
+    while n < postures.len() * DOF {
+        let angle = &mut postures[n / DOF][n % DOF];
+        *angle = angle.to_radians();
+        n += 1;
+    }
+    postures
+};
 
 /// Points of the arm that tasks and contacts name. The elbow is 0.4 m from the
 /// shoulder, `upper` 0.25 m along the upper arm, `forearm` 0.2 m along the
 /// forearm; the wrist is the distal end of link 5.
-pub const LWR_IV_POINTS: [NamedPoint; 5] = [
+const POINTS: &[NamedPoint] = &[
     NamedPoint {
         name: "upper",
         point: LinkPoint {
@@ -57,49 +112,41 @@ pub const LWR_IV_POINTS: [NamedPoint; 5] = [
     },
 ];
 
-/// The flange of the LWR IV+: 0.078 m beyond the wrist along z7.
-pub const LWR_IV_FLANGE: LinkPoint = LinkPoint {
-    link: Link::L7,
-    offset: [0.0, 0.0, 0.078],
-};
-
-/// Null-space stiffness K_q \[Nm/rad\] of the reference experiments on this arm.
-pub const LWR_IV_STIFFNESS: [f64; DOF] = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2];
-
-/// Null-space damping D \[Nms/rad\] of the reference experiments on this arm.
-pub const LWR_IV_DAMPING: [f64; DOF] = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03];
-
-/// No limit of the arm: a tighter one behind the law would take from it what it brakes with
-/// near singularities \[Nm/s\].
-const TORQUE_RATE: f64 = 10e3;
-
-/// A limit of 176 Nm within two milliseconds \[Nm/s\].
-const BRAKE_RATE: f64 = 100e3;
+/// Plus and minus this angle \[deg\], in rad.
+const fn range(deg: f64) -> [f64; 2] {
+    [-deg.to_radians(), deg.to_radians()]
+}
 
 /// KUKA LWR IV+ without tool, mounted upright.
 pub const LWR_IV: ArmParameters = ArmParameters {
     name: "lwr_iv",
-    base_height: 0.3105,
-    flange: 0.078,
+    base: Pose::at([0.0, 0.0, 0.3105]),
     gravity: [0.0, 0.0, -9.81],
     links: [
         LinkParameters {
+            name: "joint 1",
             a: 0.0,
             alpha: FRAC_PI_2,
             d: 0.0,
+            angle_offset: 0.0,
             mass: 2.7197684562423485,
             com: [0.0, 0.0, 0.0],
             inertia: [0.009, 0.0, 0.0, 0.006600186160950106, 0.0, 0.009],
-            position_limit: 170.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(170.0),
             speed_limit: 110.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 176.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 2",
             a: 0.0,
             alpha: -FRAC_PI_2,
             d: 0.0,
+            angle_offset: 0.0,
             mass: 2.808308725617543,
             com: [
                 0.0012883198941054483,
@@ -114,16 +161,21 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.0001719256286668181,
                 0.005796584477358507,
             ],
-            position_limit: 120.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(120.0),
             speed_limit: 110.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 176.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 3",
             a: 0.0,
             alpha: -FRAC_PI_2,
             d: 0.4,
+            angle_offset: 0.0,
             mass: 2.8083087444905304,
             com: [
                 -0.0012883198854470538,
@@ -138,16 +190,21 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.00492561877887486,
                 0.092508433055912,
             ],
-            position_limit: 170.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(170.0),
             speed_limit: 128.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 100.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 4",
             a: 0.0,
             alpha: FRAC_PI_2,
             d: 0.0,
+            angle_offset: 0.0,
             mass: 2.8525641464100606,
             com: [
                 -0.001268332564775182,
@@ -162,16 +219,21 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.006758660069067309,
                 0.004122932378740494,
             ],
-            position_limit: 120.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(120.0),
             speed_limit: 128.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 100.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 5",
             a: 0.0,
             alpha: FRAC_PI_2,
             d: 0.39,
+            angle_offset: 0.0,
             mass: 1.8426012749630818,
             com: [
                 -0.0009161504569315045,
@@ -186,16 +248,21 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 -4.934004848413699e-05,
                 0.00407010983651615,
             ],
-            position_limit: 170.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(170.0),
             speed_limit: 204.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 100.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 6",
             a: 0.0,
             alpha: -FRAC_PI_2,
             d: 0.0,
+            angle_offset: 0.0,
             mass: 1.2434486281950472,
             com: [
                 -0.00033326668316087995,
@@ -210,16 +277,21 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.0001348718940797564,
                 0.004016260281124971,
             ],
-            position_limit: 120.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(120.0),
             speed_limit: 184.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 38.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
         LinkParameters {
+            name: "joint 7",
             a: 0.0,
             alpha: 0.0,
             d: 0.0,
+            angle_offset: 0.0,
             mass: 0.22500002408139755,
             com: [0.0, 0.0, 0.004838540491991647],
             inertia: [
@@ -230,11 +302,17 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.0,
                 0.0001583999999992258,
             ],
-            position_limit: 170.0_f64.to_radians(),
+            rotor_inertia: 0.0,
+            friction: Friction::NONE,
+            position_range: range(170.0),
             speed_limit: 184.0_f64.to_radians(),
+            end_approach: None,
             torque_limit: 38.0,
             torque_rate_limit: TORQUE_RATE,
             brake_rate_limit: BRAKE_RATE,
         },
     ],
+    flange: FLANGE,
+    points: POINTS,
+    damping_postures: &DAMPING_POSTURES,
 };

@@ -1,0 +1,98 @@
+//! What an arm carries at its flange.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::arm::link::{Link, LinkPoint};
+use crate::arm::parameters::ArmParameters;
+use crate::arm::pose::Pose;
+
+/// A tool, gripper or load fixed to the flange. Plain `f64` data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tool {
+    /// Pose of the tool frame in the flange.
+    pub pose: Pose,
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Centre of mass \[m\], in the tool frame.
+    pub com: [f64; 3],
+    /// Inertia about the centre of mass \[kg m2\], axes of the tool frame, in the order
+    /// Ixx Ixy Ixz Iyy Iyz Izz.
+    pub inertia: [f64; 6],
+}
+
+impl ArmParameters {
+    /// The same arm with a tool: the body of link 7 is that of both together. The tables are
+    /// checked where a model is made from them.
+    ///
+    /// A controller of the new tables takes over a running arm with the old state after
+    /// [`State::resume_after_gap`](crate::State::resume_after_gap): the observer keeps its
+    /// residual and takes the momentum anew.
+    #[must_use]
+    pub fn with_tool(&self, tool: &Tool) -> Self {
+        let mut arm = *self;
+        // They are those of the bare arm.
+        arm.damping_postures = &[];
+        let [.., link] = &mut arm.links;
+        let turn = rotation(&self.flange) * rotation(&tool.pose);
+        let own_com = Vector3::from(link.com);
+        let tool_com = Vector3::from(self.tool_point(tool).offset) + turn * Vector3::from(tool.com);
+        let own = Body {
+            mass: link.mass,
+            com: own_com,
+            inertia: matrix(&link.inertia),
+        };
+        let carried = Body {
+            mass: tool.mass,
+            com: tool_com,
+            inertia: turn * matrix(&tool.inertia) * turn.transpose(),
+        };
+        let both = own.joined(&carried);
+        link.mass = both.mass;
+        link.com = both.com.into();
+        let i = both.inertia;
+        link.inertia = [i.m11, i.m12, i.m13, i.m22, i.m23, i.m33];
+        arm
+    }
+
+    /// The origin of a tool's frame, which moves with link 7.
+    #[must_use]
+    pub fn tool_point(&self, tool: &Tool) -> LinkPoint {
+        LinkPoint {
+            link: Link::L7,
+            offset: self.flange.place(tool.pose.shift),
+        }
+    }
+}
+
+/// A body in some frame: mass \[kg\], centre of mass \[m\], inertia about it \[kg m2\].
+struct Body {
+    mass: f64,
+    com: Vector3<f64>,
+    inertia: Matrix3<f64>,
+}
+
+impl Body {
+    /// Both as one. Without any mass it is at the first one's place.
+    fn joined(&self, other: &Self) -> Self {
+        let mass = self.mass + other.mass;
+        let way = other.com - self.com;
+        let share = if mass > 0.0 { other.mass / mass } else { 0.0 };
+        // Steiner for both, with the reduced mass.
+        let reduced = self.mass * share;
+        let apart = Matrix3::identity() * way.dot(&way) - way * way.transpose();
+        Self {
+            mass,
+            com: self.com + way * share,
+            inertia: self.inertia + other.inertia + apart * reduced,
+        }
+    }
+}
+
+fn rotation(pose: &Pose) -> Matrix3<f64> {
+    // nalgebra takes columns.
+    Matrix3::from(pose.rotation).transpose()
+}
+
+fn matrix(&[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> Matrix3<f64> {
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}

@@ -1,0 +1,127 @@
+//! The worst posture of an arm that brings no checked ones: a net over its ranges, then
+//! coordinate ascent from the worst places of it.
+
+use core::f64::consts::{PI, TAU};
+
+use super::mode::{DampingRate, NONE, mode_at};
+use crate::arm::ArmModel;
+use crate::joint::{DOF, JointMatrix};
+use crate::real::Real;
+
+/// Postures of the net.
+const NET: usize = 256;
+
+/// How many of them are climbed from.
+const CLIMBS: usize = 16;
+
+/// Rounds of each climb, of one step up and one down per joint and one along the way.
+const ROUNDS: usize = 16;
+
+/// How many of the summits are climbed on from, and with how many rounds.
+const LAST_CLIMBS: usize = 4;
+const LAST_ROUNDS: usize = 48;
+
+/// Shares of the ranges of neighbours in the net: powers of 1/x with x^8 = x + 1, whose
+/// multiples fill seven dimensions evenly.
+const SHARES: [f64; DOF] = [
+    0.911592, 0.831001, 0.757534, 0.690562, 0.629511, 0.573857, 0.523124,
+];
+
+/// Where the position of each joint can change M: its range, of continuous joints one turn.
+fn ranges<T: Real>(arm: &ArmModel<T>) -> [[f64; 2]; DOF] {
+    let [least, greatest] = arm.position_range();
+    let mut ranges = [[-PI, PI]; DOF];
+    for ((range, min), max) in ranges.iter_mut().zip(least).zip(greatest) {
+        let (min, max) = (min.to_f64(), max.to_f64());
+        if max - min <= TAU {
+            *range = [min, max];
+        }
+    }
+    ranges
+}
+
+/// The postures of the net \[rad\].
+fn net<T: Real>(arm: &ArmModel<T>) -> impl Iterator<Item = [f64; DOF]> {
+    let ranges = ranges(arm);
+    (0..NET).map(move |n| {
+        let mut posture = [0.0; DOF];
+        for ((angle, [min, max]), share) in posture.iter_mut().zip(&ranges).zip(&SHARES) {
+            let place = 0.5 + share * n as f64;
+            *angle = min + (max - min) * (place - libm::floor(place));
+        }
+        posture
+    })
+}
+
+/// The fastest mode the search finds. Its time is bounded: at most
+/// `NET` + (`CLIMBS` x `ROUNDS` + `LAST_CLIMBS` x `LAST_ROUNDS`) x 15 postures.
+pub(super) fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
+    let ranges = ranges(arm);
+    let mut places = [NONE; CLIMBS];
+    for posture in net(arm) {
+        keep_worst(&mut places, mode_at(arm, damping, posture));
+    }
+    let mut summits = [NONE; LAST_CLIMBS];
+    for place in &places {
+        keep_worst(&mut summits, climbed(arm, damping, &ranges, place, ROUNDS));
+    }
+    let mut fastest = [NONE];
+    for summit in &summits {
+        let last = climbed(arm, damping, &ranges, summit, LAST_ROUNDS);
+        keep_worst(&mut fastest, last);
+    }
+    let [fastest] = fastest;
+    fastest
+}
+
+/// Puts a mode among the worst ones seen, worst first, if it belongs there.
+fn keep_worst(worst: &mut [DampingRate], mut mode: DampingRate) {
+    for place in worst {
+        if mode.rate > place.rate {
+            core::mem::swap(place, &mut mode);
+        }
+    }
+}
+
+/// Coordinate ascent within the ranges; the steps halve when no joint gains.
+fn climbed<T: Real>(
+    arm: &ArmModel<T>,
+    damping: &JointMatrix<T>,
+    ranges: &[[f64; 2]; DOF],
+    start: &DampingRate,
+    rounds: usize,
+) -> DampingRate {
+    let mut best = *start;
+    let mut step = 0.125;
+    for _ in 0..rounds {
+        let before = best;
+        for (i, [min, max]) in ranges.iter().enumerate() {
+            for way in [step * (max - min), -step * (max - min)] {
+                let mut posture = best.posture;
+                if let Some(angle) = posture.get_mut(i) {
+                    *angle = (*angle + way).min(*max).max(*min);
+                }
+                let mode = mode_at(arm, damping, posture);
+                if mode.rate > best.rate {
+                    best = mode;
+                }
+            }
+        }
+        if best.rate <= before.rate {
+            step *= 0.5;
+            continue;
+        }
+        // Once more as far: along a ridge that no single joint follows.
+        let further = core::array::from_fn(|i| {
+            let [min, max] = ranges[i];
+            (2.0 * best.posture[i] - before.posture[i])
+                .min(max)
+                .max(min)
+        });
+        let mode = mode_at(arm, damping, further);
+        if mode.rate > best.rate {
+            best = mode;
+        }
+    }
+    best
+}
