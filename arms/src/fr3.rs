@@ -274,5 +274,6 @@ pub const FR3: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    limits: None,
     damping_postures: &[],
 };

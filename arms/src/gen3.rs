@@ -264,5 +264,6 @@ pub const GEN3: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    limits: None,
     damping_postures: &[],
 };

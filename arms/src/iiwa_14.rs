@@ -189,5 +189,6 @@ pub const IIWA_14: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    limits: None,
     damping_postures: &[],
 };

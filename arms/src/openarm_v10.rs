@@ -249,6 +249,7 @@ pub const OPENARM_V10_RIGHT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_RIGHT,
     points: POINTS_RIGHT,
+    limits: None,
     damping_postures: &[],
 };
 
@@ -475,5 +476,6 @@ pub const OPENARM_V10_LEFT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_LEFT,
     points: POINTS_LEFT,
+    limits: None,
     damping_postures: &[],
 };

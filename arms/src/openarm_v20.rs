@@ -272,6 +272,7 @@ pub const OPENARM_V20_LEFT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_LEFT,
     points: POINTS_LEFT,
+    limits: None,
     damping_postures: &[],
 };
 
@@ -523,5 +524,6 @@ pub const OPENARM_V20_RIGHT: ArmParameters = ArmParameters {
     ],
     flange: FLANGE_RIGHT,
     points: POINTS_RIGHT,
+    limits: None,
     damping_postures: &[],
 };

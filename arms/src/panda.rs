@@ -256,5 +256,6 @@ pub const PANDA: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    limits: None,
     damping_postures: &[],
 };

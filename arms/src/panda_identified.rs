@@ -186,5 +186,6 @@ pub const PANDA_IDENTIFIED: ArmParameters = ArmParameters {
     ],
     flange: FLANGE,
     points: POINTS,
+    limits: None,
     damping_postures: &[],
 };

@@ -10,6 +10,7 @@ mod check;
 pub mod dynamics;
 mod exchange;
 pub mod kinematics;
+pub mod limits;
 mod link;
 mod model;
 mod moments;
@@ -21,6 +22,7 @@ mod tool;
 mod transform;
 
 pub use check::ArmError;
+pub use limits::JointLimits;
 pub use link::{Link, LinkPoint, NamedPoint};
 pub use model::ArmModel;
 pub(crate) use model::LinkModel;

@@ -5,7 +5,8 @@ use core::fmt;
 use crate::arm::ArmError;
 use crate::joint::DOF;
 use crate::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, LEVEL_SPEED_RANGE, MAX_LEVELS, MAX_ROWS,
+    MOBILITY_RANGE, POINT_OFFSET_MAX_M,
 };
 use crate::real::Real;
 
@@ -32,6 +33,44 @@ impl Gain {
             Self::TaskDamping => "task damping [1/s]",
             Self::NullStiffness => "null-space stiffness [Nm/rad]",
             Self::NullDamping => "null-space damping [Nms/rad]",
+        }
+    }
+}
+
+/// Which number of [`LevelLimits`](crate::task::LevelLimits) an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LevelLimit {
+    /// z0.
+    DriveMobility,
+    /// zr.
+    ReleaseMobility,
+    /// v_err.
+    ErrorSpeed,
+    /// vm.
+    LostSpeed,
+    /// zw.
+    StiffMobility,
+}
+
+impl LevelLimit {
+    /// Name and unit.
+    fn name(self) -> &'static str {
+        match self {
+            Self::DriveMobility => "drive mobility z0 [1/kg]",
+            Self::ReleaseMobility => "release mobility zr [1/kg]",
+            Self::ErrorSpeed => "error speed v_err [m/s]",
+            Self::LostSpeed => "speed along a lost direction vm [m/s]",
+            Self::StiffMobility => "stiff mobility zw [1/kg]",
+        }
+    }
+
+    /// Smallest and largest value.
+    pub(crate) fn range(self) -> [f64; 2] {
+        match self {
+            Self::ErrorSpeed | Self::LostSpeed => LEVEL_SPEED_RANGE,
+            _ => MOBILITY_RANGE,
         }
     }
 }
@@ -137,6 +176,20 @@ pub enum ConfigError {
         /// The rate \[1/s\].
         value: f64,
     },
+    /// A number of what a task does near its limits.
+    LevelLimits {
+        /// Its level.
+        level: usize,
+        /// Which number.
+        limit: LevelLimit,
+        /// Its value.
+        value: f64,
+        /// What is allowed, from and to.
+        allowed: [f64; 2],
+    },
+    /// An integrated posture and the law within limits: what becomes of both together is not
+    /// known. [`Controller::exact`](crate::Controller::exact) takes it.
+    IntegratedPosture,
     /// The null-space damping is too strong for the cycle.
     Damping {
         /// The joint that dissipates most.
@@ -242,6 +295,20 @@ impl fmt::Display for ConfigError {
                 f,
                 "inertia-shaped null-space damping {value} 1/s; it must be above 0 and at most \
                  {GAIN_MAX:e}"
+            ),
+            Self::LevelLimits {
+                level,
+                limit,
+                value,
+                allowed: [min, max],
+            } => write!(
+                f,
+                "level {level}: {} is {value}; allowed {min} to {max}",
+                limit.name()
+            ),
+            Self::IntegratedPosture => write!(
+                f,
+                "posture is integrated; allowed constant, or the exact law without limits"
             ),
             Self::Damping {
                 joint,

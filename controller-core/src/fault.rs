@@ -36,6 +36,18 @@ macro_rules! numbers {
                     "torque of a joint cut to its largest change per cycle";
                 Joining = 99, "joining", "JOINING",
                     "a level, or the posture, on its way to a reference that jumped";
+                Degraded = 100, "degraded", "DEGRADED",
+                    "a level near a singularity: along a direction it is driven less than it asks";
+                Released = 101, "released", "RELEASED",
+                    "a level in a singularity: a direction is given to the levels below";
+                Shaped = 102, "shaped", "SHAPED",
+                    "command of a level shortened: its error, or a direction that it loses";
+                Scaled = 103, "scaled", "SCALED",
+                    "a level, or the null space, gets a share of what it asks the joints for";
+                Bounded = 104, "bounded", "BOUNDED",
+                    "a joint at what its range or its speed limit allows";
+                Unresolved = 105, "unresolved", "UNRESOLVED",
+                    "bounds of the joints kept by a cut: too many at once to share out";
             }
         }
     };
@@ -309,6 +321,23 @@ pub struct Status {
     pub rate_limited: IndexSet,
     /// Levels of [`LimitKind::Joining`]; bit 7, the eighth, is the posture.
     pub joining: IndexSet,
+    /// Levels of [`LimitKind::Degraded`].
+    pub degraded: IndexSet,
+    /// Levels of [`LimitKind::Released`].
+    pub released: IndexSet,
+    /// Levels of [`LimitKind::Shaped`].
+    pub shaped: IndexSet,
+    /// Levels of [`LimitKind::Scaled`]; bit 7, the eighth, is the null space.
+    pub scaled: IndexSet,
+    /// Joints of [`LimitKind::Bounded`] that may not go further down.
+    pub at_least: IndexSet,
+    /// Joints of [`LimitKind::Bounded`] that may not go further up.
+    pub at_greatest: IndexSet,
+    /// Whether [`LimitKind::Unresolved`].
+    pub unresolved: bool,
+    /// Exchanges that the projection onto the bounds took, at most
+    /// [`PIVOTS`](crate::ranges::PIVOTS); 0 where no bound was in the way.
+    pub pivots: u8,
 }
 
 /// The limits of a cycle without a fault, as in [`Status`].
@@ -318,40 +347,73 @@ pub(crate) struct Limits {
     pub rank: IndexSet,
     pub rate_limited: IndexSet,
     pub joining: IndexSet,
+    pub degraded: IndexSet,
+    pub released: IndexSet,
+    pub shaped: IndexSet,
+    pub scaled: IndexSet,
+    pub at_least: IndexSet,
+    pub at_greatest: IndexSet,
+    pub unresolved: bool,
+    pub pivots: u8,
 }
 
-impl Status {
-    /// No limit, no fault.
-    pub const CLEAR: Self = Self {
-        mode: Mode::Running,
-        fault: None,
+impl Limits {
+    pub const NONE: Self = Self {
         saturated: IndexSet::NONE,
         rank: IndexSet::NONE,
         rate_limited: IndexSet::NONE,
         joining: IndexSet::NONE,
+        degraded: IndexSet::NONE,
+        released: IndexSet::NONE,
+        shaped: IndexSet::NONE,
+        scaled: IndexSet::NONE,
+        at_least: IndexSet::NONE,
+        at_greatest: IndexSet::NONE,
+        unresolved: false,
+        pivots: 0,
     };
+
+    const fn any(&self) -> bool {
+        let sets = self.saturated.0
+            | self.rank.0
+            | self.rate_limited.0
+            | self.joining.0
+            | self.degraded.0
+            | self.released.0
+            | self.shaped.0
+            | self.scaled.0
+            | self.at_least.0
+            | self.at_greatest.0;
+        sets != 0 || self.unresolved
+    }
+}
+
+impl Status {
+    /// No limit, no fault.
+    pub const CLEAR: Self = Self::running(Limits::NONE);
 
     /// A cycle without a fault, with the limits that were active.
     #[inline(always)]
     pub(crate) const fn running(limits: Limits) -> Self {
-        let Limits {
-            saturated,
-            rank,
-            rate_limited,
-            joining,
-        } = limits;
-        let limited = saturated.0 | rank.0 | rate_limited.0 | joining.0 != 0;
         Self {
-            mode: if limited {
+            mode: if limits.any() {
                 Mode::Limited
             } else {
                 Mode::Running
             },
             fault: None,
-            saturated,
-            rank,
-            rate_limited,
-            joining,
+            saturated: limits.saturated,
+            rank: limits.rank,
+            rate_limited: limits.rate_limited,
+            joining: limits.joining,
+            degraded: limits.degraded,
+            released: limits.released,
+            shaped: limits.shaped,
+            scaled: limits.scaled,
+            at_least: limits.at_least,
+            at_greatest: limits.at_greatest,
+            unresolved: limits.unresolved,
+            pivots: limits.pivots,
         }
     }
 
@@ -368,6 +430,15 @@ impl Status {
             (LimitKind::Rank, self.rank),
             (LimitKind::TorqueRate, self.rate_limited),
             (LimitKind::Joining, self.joining),
+            (LimitKind::Degraded, self.degraded),
+            (LimitKind::Released, self.released),
+            (LimitKind::Shaped, self.shaped),
+            (LimitKind::Scaled, self.scaled),
+            (
+                LimitKind::Bounded,
+                IndexSet(self.at_least.0 | self.at_greatest.0),
+            ),
+            (LimitKind::Unresolved, IndexSet(u8::from(self.unresolved))),
         ];
         active
             .into_iter()

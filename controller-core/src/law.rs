@@ -5,6 +5,7 @@ pub mod allocation;
 pub mod control;
 pub mod gain_bound;
 pub mod hierarchy;
+pub mod limits;
 pub mod motion;
 pub mod null_space;
 pub mod sampling;

@@ -119,6 +119,24 @@ impl<T: Real> Cholesky<T> {
         x
     }
 
+    /// L^-1, lower triangular.
+    #[must_use]
+    #[inline]
+    pub fn inverse_factor(&self) -> JointMatrix<T> {
+        let mut inverse: JointMatrix<T> = zeros();
+        for_each_joint!(j, {
+            inverse[(j, j)] = self.inverse_diagonal[j];
+            for i in j + 1..DOF {
+                let mut sum = T::ZERO;
+                for k in j..i {
+                    sum += self.l[(i, k)] * inverse[(k, j)];
+                }
+                inverse[(i, j)] = -(sum * self.inverse_diagonal[i]);
+            }
+        });
+        inverse
+    }
+
     /// L x.
     #[must_use]
     #[inline]

@@ -98,3 +98,29 @@ pub const RESOLVER_GAIN_BOUND: f64 = 1.0;
 /// How far a position command of a resolver may be from the arm \[rad\]: an arm that does
 /// not follow is not wound up.
 pub const COMMAND_LEAD_MAX: f64 = 0.1;
+
+/// ell \[m\]: at this distance from its origin a turn counts as a way, where mobilities, errors
+/// and speeds of orientations are held against those of positions.
+pub const ORIENTATION_LENGTH: f64 = 0.1;
+
+/// Mobilities that thresholds may have \[1/kg\]: below, single precision has nothing left of
+/// its rows; above, an ordinary arm is always at a threshold.
+pub const MOBILITY_RANGE: [f64; 2] = [1e-4, 1.0];
+
+/// Speeds that a level may be held to \[m/s\].
+pub const LEVEL_SPEED_RANGE: [f64; 2] = [1e-3, 20.0];
+
+/// Accelerations \[rad/s2\] and gains \[1/s\] that a joint may be limited with.
+pub const JOINT_LIMIT_RANGE: [f64; 2] = [1e-2, 1e5];
+
+/// kappa \[1/s\]: how fast null-space motion decays where a direction is fully released.
+pub const RELEASE_DAMPING: f64 = 20.0;
+
+/// dev0 \[m/s2\]: a level that the bounds of the joints disturb by so much gives way twice as far.
+pub const SOFTENING_DISTURBANCE: f64 = 2.0;
+
+/// beta: share by which the remembered disturbance of a level follows that of a cycle.
+pub const DISTURBANCE_SMOOTHING: f64 = 0.2;
+
+/// Most exchanges of the projection onto the bounds of the joints in one cycle.
+pub const PIVOTS: u8 = 12;

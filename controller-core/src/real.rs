@@ -22,6 +22,8 @@ pub trait Real:
     const ONE: Self;
     /// 1/2.
     const HALF: Self;
+    /// Share of a pivot of a 7 x 7 elimination of ordinary condition that may be rounding.
+    const PIVOT_SHARE: Self;
 
     /// Nearest value of this precision.
     fn from_f64(value: f64) -> Self;
@@ -111,11 +113,12 @@ macro_rules! real {
      sin: [$($s:expr),+], cos: [$($c:expr),+],
      ln2: [$l1:expr, $l2:expr], exp: [$($e:expr),+],
      exp_range: $exp_range:expr, exponent_bias: $bias:expr, mantissa: $mantissa:expr,
-     square_root: $sqrt:expr) => {
+     square_root: $sqrt:expr, pivot_share: $pivot_share:expr) => {
         impl Real for $float {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
+            const PIVOT_SHARE: Self = $pivot_share;
 
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -229,7 +232,7 @@ mod constants {
               1.0 / 40_320.0, 1.0 / 362_880.0, 1.0 / 3_628_800.0, 1.0 / 39_916_800.0,
               1.0 / 479_001_600.0, 1.0 / 6_227_020_800.0],
         exp_range: 700.0, exponent_bias: 1023, mantissa: 52,
-        square_root: square_root_f64);
+        square_root: square_root_f64, pivot_share: 1e-12);
 
     real!(f32, u32,
         round: 12_582_912.0,
@@ -239,7 +242,7 @@ mod constants {
         ln2: [0.693_115_234_375, 3.194_618_3e-5],
         exp: [1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5_040.0],
         exp_range: 85.0, exponent_bias: 127, mantissa: 23,
-        square_root: square_root_f32);
+        square_root: square_root_f32, pivot_share: 3e-6);
 }
 
 #[cfg(test)]

@@ -228,8 +228,8 @@ impl<T: Real> Resolver<T> {
             status: Status::running(Limits {
                 saturated,
                 rank: state.hierarchy.deficient(),
-                rate_limited: IndexSet::NONE,
                 joining: state.followed.joining(),
+                ..Limits::NONE
             }),
         }
     }

@@ -4,14 +4,16 @@
 mod axes;
 mod decay;
 mod followed;
+mod level_limits;
 pub mod orientation;
 pub mod rows;
-mod set;
+pub(crate) mod set;
 mod target;
 pub mod trajectory;
 
 pub use axes::Axes;
 pub use followed::Followed;
+pub use level_limits::LevelLimits;
 pub(crate) use set::{LevelPoint, Levels};
 pub use set::{Task, TaskGains, TaskSet, Tracked};
 pub use target::{Reference, Target};

@@ -91,6 +91,7 @@ impl Tables {
             base: Pose::at([0.0, 0.0, self.base_height]),
             flange: Pose::at([0.0, 0.0, self.flange]),
             points: &[],
+            limits: None,
             damping_postures: &[],
             gravity: self.gravity,
             links: self.links.each_ref().map(|link| LinkParameters {

@@ -2,9 +2,10 @@
 
 use core::fmt;
 
+use crate::arm::limits::JointLimits;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
 use crate::arm::pose::Pose;
-use crate::ranges::{ANGLE_MAX, GRAVITY_MAX, MASS_MIN, POSITION_MARGIN};
+use crate::ranges::{ANGLE_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, MASS_MIN, POSITION_MARGIN};
 
 /// Why parameter tables do not make a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +123,32 @@ pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
     within(0, "gravity [m/s2]", gravity, [0.0, GRAVITY_MAX])?;
     (1..)
         .zip(&arm.links)
-        .try_for_each(|(number, link)| joint(number, link))
+        .try_for_each(|(number, link)| joint(number, link))?;
+    match &arm.limits {
+        Some(limits) => joint_limits(limits),
+        None => Ok(()),
+    }
+}
+
+fn joint_limits(limits: &JointLimits) -> Result<(), ArmError> {
+    for (parameter, values) in [
+        ("limits.acceleration [rad/s2]", &limits.acceleration),
+        ("limits.braking [rad/s2]", &limits.braking),
+        ("limits.speed_gain [1/s]", &limits.speed_gain),
+    ] {
+        for (number, &value) in (1..).zip(values) {
+            within(number, parameter, value, JOINT_LIMIT_RANGE)?;
+        }
+    }
+    let (gain, [least, most]) = (limits.position_gain, JOINT_LIMIT_RANGE);
+    within(0, "limits.position_gain [1/s]", gain, [least, most])?;
+    within(
+        0,
+        "limits.margin [rad]",
+        limits.margin,
+        [0.0, POSITION_MARGIN],
+    )?;
+    within(0, "limits.speed_share", limits.speed_share, [0.1, 1.0])
 }
 
 /// Rotations printed with ten digits pass; those with five do not.

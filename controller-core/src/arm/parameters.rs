@@ -1,5 +1,6 @@
 //! The tables of an arm as plain data.
 
+use crate::arm::limits::JointLimits;
 use crate::arm::link::{Link, LinkPoint, NamedPoint};
 use crate::arm::pose::Pose;
 use crate::joint::DOF;
@@ -111,6 +112,9 @@ pub struct ArmParameters {
     pub flange: Pose,
     /// Points that have a name.
     pub points: &'static [NamedPoint],
+    /// How the law keeps joints within their ranges and speeds; none: a rule makes it from the
+    /// rest of the tables.
+    pub limits: Option<JointLimits>,
     /// Postures \[rad\] among which one is the worst for any diagonal null-space damping, of
     /// these very tables. Empty: a search when a controller is made takes their place
     /// ([`crate::law::sampling`]).

@@ -46,5 +46,6 @@ pub(crate) const RODS: ArmParameters = ArmParameters {
     ],
     flange: Pose::at([0.0, 0.0, 0.1]),
     points: &[],
+    limits: None,
     damping_postures: &[],
 };

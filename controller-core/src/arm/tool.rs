@@ -32,6 +32,7 @@ impl ArmParameters {
         let mut arm = *self;
         // They are those of the bare arm.
         arm.damping_postures = &[];
+        arm.limits = None;
         let [.., link] = &mut arm.links;
         let turn = rotation(&self.flange) * rotation(&tool.pose);
         let own_com = Vector3::from(link.com);

@@ -3,11 +3,14 @@
 use super::brake::brake_rate;
 use super::config::ControllerConfig;
 use super::measurement::believe_posture;
+use super::stages::Law;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
 use crate::fault::Fault;
 use crate::joint::JointVector;
-use crate::law::null_space::Compliance;
+use crate::law::limits::bounds::JointBounds;
+use crate::law::limits::joint_limits;
+use crate::law::null_space::{Compliance, Posture};
 use crate::law::sampling::DampingRate;
 use crate::real::Real;
 use crate::task::Levels;
@@ -17,7 +20,10 @@ use crate::task::Levels;
 #[derive(Clone, Debug)]
 pub struct Controller<T: Real> {
     pub(super) arm: ArmModel<T>,
+    pub(super) law: Law<T>,
     pub(super) levels: Levels<T>,
+    /// Of the law within limits.
+    pub(super) bounds: JointBounds<T>,
     pub(super) compliance: Compliance<T>,
     pub(super) observer_gain: JointVector<T>,
     pub(super) cycle_s: T,
@@ -32,11 +38,30 @@ pub struct Controller<T: Real> {
 }
 
 impl<T: Real> Controller<T> {
-    /// Validates arm and configuration and converts them to the precision `T`.
+    /// The law within limits ([`crate::law::limits`]). Validates arm and configuration and
+    /// converts them to the precision `T`.
     ///
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be.
     pub fn new(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        if config.null_space.posture != Posture::Constant {
+            return Err(ConfigError::IntegratedPosture);
+        }
+        let mut controller = Self::exact(arm, config)?;
+        controller.levels = Levels::new(&config.tasks, &controller.arm);
+        let limits = joint_limits(arm, &controller.arm, config.cycle_s, config.dead_cycles);
+        controller.bounds = JointBounds::new(&controller.arm, &limits);
+        controller.law = Law::within_limits();
+        Ok(controller)
+    }
+
+    /// The exact law of the paper: singularities, ranges and speed limits are not its
+    /// business; torques are cut joint by joint. An image that makes controllers in one way
+    /// only has the other law not in it.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that cannot be.
+    pub fn exact(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
         match &ArmModel::new(arm) {
             Ok(arm) => match config.validate(arm) {
                 Ok(fastest_mode) => Ok(Self::converted(arm, config, fastest_mode)),
@@ -46,8 +71,8 @@ impl<T: Real> Controller<T> {
         }
     }
 
-    /// No check. Behind a call, so that the parts are made in the place of the result and
-    /// nowhere else.
+    /// No check, the exact law. Behind a call, so that the parts are made in the place of the
+    /// result and nowhere else.
     #[inline(never)]
     pub(super) fn converted(
         arm: &ArmModel<T>,
@@ -57,7 +82,9 @@ impl<T: Real> Controller<T> {
         let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
-            levels: Levels::new(&config.tasks, arm),
+            law: Law::exact(),
+            levels: Levels::new(&config.tasks, arm).exact(),
+            bounds: JointBounds::none(),
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
             cycle_s,

@@ -7,11 +7,16 @@ use super::measurement::Measurement;
 use super::observer::Observer;
 use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
-use crate::fault::Fault;
+use crate::fault::{Fault, Limits};
 use crate::joint::{JointState, JointVector, zeros};
 use crate::law::allocation::Allocation;
 use crate::law::control::{Control, TorqueDemand};
 use crate::law::hierarchy::Hierarchy;
+use crate::law::limits::bounds::AccelerationBounds;
+use crate::law::limits::motion::WhitenedMotion;
+use crate::law::limits::projection::Projection;
+use crate::law::limits::spectrum::Spectrum;
+use crate::law::limits::wish::Wish;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::PostureIntegral;
 use crate::real::Real;
@@ -45,14 +50,24 @@ pub struct Data<T: Real> {
     pub observer: Observer<T>,
     /// J, dJ/dt and what the tasks command, all levels stacked.
     pub rows: TaskRows<T>,
-    /// R and Q of J L^-T.
+    /// R and Q of J L^-T, of the exact law.
     pub hierarchy: Hierarchy<T>,
+    /// Directions and mobilities of J L^-T, of the law within limits.
+    pub spectrum: Spectrum<T>,
+    /// The motion along them.
+    pub whitened_motion: WhitenedMotion<T>,
     /// Task and null-space parts of dq.
     pub motion: MotionSplit<T>,
     /// q_d \[rad\].
     pub posture: JointVector<T>,
-    /// Task accelerations and null-space force.
+    /// Task accelerations and null-space force, of the exact law.
     pub control: Control<T>,
+    /// What levels and null space ask the joints for, of the law within limits.
+    pub wish: Wish<T>,
+    /// What acceleration each joint may have.
+    pub bounds: AccelerationBounds<T>,
+    /// The wish within the bounds.
+    pub projection: Projection<T>,
     /// Torque asked for \[Nm\].
     pub demand: TorqueDemand<T>,
     /// Torque allowed \[Nm\].
@@ -84,9 +99,14 @@ impl<T: Real> Data<T> {
             observer: Observer::new(),
             rows: TaskRows::new(),
             hierarchy: Hierarchy::new(),
+            spectrum: Spectrum::new(),
+            whitened_motion: WhitenedMotion::new(),
             motion: MotionSplit::new(),
             posture: zeros(),
             control: Control::new(),
+            wish: Wish::new(),
+            bounds: AccelerationBounds::new(),
+            projection: Projection::new(),
             demand: TorqueDemand(zeros()),
             allocation: Allocation::new(),
             delay: Delay::new(),
@@ -107,12 +127,26 @@ impl<T: Real> Data<T> {
         &self.observer.residual
     }
 
+    /// Writes what the law within limits has met in the cycle.
+    #[inline(always)]
+    pub(super) fn tell_limits(&self, active: &mut Limits) {
+        let (spectrum, wish, projection) = (&self.spectrum, &self.wish, &self.projection);
+        active.degraded = spectrum.degraded;
+        active.released = spectrum.released;
+        active.shaped = wish.shaped;
+        active.scaled = wish.scaled;
+        [active.at_least, active.at_greatest] = projection.at_bound;
+        active.unresolved = projection.unresolved;
+        active.pivots = projection.pivots;
+    }
+
     /// Forgets what is remembered: observer, delay, integrated posture,
     /// what was followed.
     pub(super) fn forget(&mut self) {
         self.observer = Observer::new();
         self.delay = Delay::new();
         self.posture_integral = PostureIntegral::new();
+        self.projection.forget();
         self.followed = Followed::new();
     }
 }
@@ -185,6 +219,7 @@ impl<T: Real> State<T> {
     /// observer keeps its residual and takes the momentum anew.
     pub fn resume_after_gap(&mut self) {
         self.data.observer.started = false;
+        self.data.projection.forget();
     }
 
     /// The next reference is followed as it is: a jump is not joined

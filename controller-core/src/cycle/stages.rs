@@ -6,7 +6,9 @@ use super::data::{Data, Input};
 use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
 use crate::law::allocation::TorqueLimits;
-use crate::law::control::TorqueDemand;
+use crate::law::control::{Control, TorqueDemand};
+use crate::law::limits::projection::Wished;
+use crate::law::limits::wish::Ask;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::Posture;
 use crate::real::Real;
@@ -29,14 +31,22 @@ pub enum StageName {
     Followed,
     /// [`Data::rows`].
     TaskRows,
-    /// [`Data::hierarchy`].
+    /// [`Data::hierarchy`], of the exact law.
     Hierarchy,
+    /// [`Data::spectrum`], of the law within limits.
+    Spectrum,
     /// [`Data::motion`].
     MotionSplit,
     /// [`Data::posture`].
     Posture,
-    /// [`Data::control`].
+    /// [`Data::control`], of the exact law.
     Control,
+    /// [`Data::wish`], of the law within limits.
+    Wish,
+    /// [`Data::bounds`], of the law within limits.
+    Bounds,
+    /// [`Data::projection`], of the law within limits.
+    Projection,
     /// [`Data::demand`]; other laws take the place of this stage.
     TorqueDemand,
     /// [`Data::allocation`].
@@ -58,9 +68,13 @@ impl StageName {
             Self::Followed => "followed",
             Self::TaskRows => "task rows",
             Self::Hierarchy => "hierarchy",
+            Self::Spectrum => "spectrum",
             Self::MotionSplit => "motion split",
             Self::Posture => "posture",
             Self::Control => "control",
+            Self::Wish => "wish",
+            Self::Bounds => "bounds",
+            Self::Projection => "projection",
             Self::TorqueDemand => "torque demand",
             Self::Allocation => "allocation",
             Self::ObserverInput => "observer input",
@@ -71,12 +85,18 @@ impl StageName {
 /// A stage: reads results above its own, writes its own.
 pub type Run<T> = fn(&Controller<T>, &Input<'_, T>, &mut Data<T>);
 
-/// Number of stages.
-pub const STAGE_COUNT: usize = 14;
+/// A stage with its name.
+pub type Stage<T> = (StageName, Run<T>);
+
+/// Number of stages of the law within limits.
+pub const STAGE_COUNT: usize = 16;
+
+/// Number of stages of the exact law.
+pub const EXACT_STAGE_COUNT: usize = 14;
 
 impl<T: Real> Controller<T> {
-    /// The cycle.
-    pub const STAGES: [(StageName, Run<T>); STAGE_COUNT] = [
+    /// Before the law: what is, and what is followed.
+    pub(super) const OBSERVED: [Stage<T>; 7] = [
         (StageName::JointState, joint_state),
         (StageName::Kinematics, kinematics),
         (StageName::Dynamics, dynamics),
@@ -84,14 +104,93 @@ impl<T: Real> Controller<T> {
         (StageName::Observer, observer),
         (StageName::Followed, followed),
         (StageName::TaskRows, task_rows),
+    ];
+
+    /// The law within limits.
+    const WITHIN_LIMITS: [Stage<T>; 7] = [
+        (StageName::Spectrum, spectrum),
+        (StageName::MotionSplit, spectral_motion),
+        (StageName::Posture, posture),
+        (StageName::Wish, wish),
+        (StageName::Bounds, bounds),
+        (StageName::Projection, projection),
+        (StageName::TorqueDemand, projected_demand),
+    ];
+
+    /// The exact law but for its last stage, which other laws may take the place of.
+    pub(super) const EXACT: [Stage<T>; 4] = [
         (StageName::Hierarchy, hierarchy),
         (StageName::MotionSplit, motion_split),
         (StageName::Posture, posture),
         (StageName::Control, control),
-        (StageName::TorqueDemand, torque_demand),
+    ];
+
+    /// Behind the law: what reaches the motors, and what is remembered of it.
+    pub(super) const ALLOWED: [Stage<T>; 2] = [
         (StageName::Allocation, allocation),
         (StageName::ObserverInput, observer_input),
     ];
+
+    /// The cycle with the law within limits.
+    pub const STAGES: [Stage<T>; STAGE_COUNT] = {
+        let [a, b, c, d, e, f, g] = Self::OBSERVED;
+        let [h, i, j, k, l, m, n] = Self::WITHIN_LIMITS;
+        let [o, p] = Self::ALLOWED;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
+    };
+
+    /// The cycle with the exact law.
+    pub const EXACT_STAGES: [Stage<T>; EXACT_STAGE_COUNT] = {
+        let [a, b, c, d, e, f, g] = Self::OBSERVED;
+        let [h, i, j, k] = Self::EXACT;
+        let [o, p] = Self::ALLOWED;
+        let demand: Stage<T> = (StageName::TorqueDemand, torque_demand);
+        [a, b, c, d, e, f, g, h, i, j, k, demand, o, p]
+    };
+}
+
+/// The law of a controller: [`Data::demand`] from what is observed and followed. By a pointer,
+/// so that a program has those laws in it that its controllers are made with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Law<T: Real> {
+    /// Whether it is the one within limits.
+    pub limits: bool,
+    pub run: Run<T>,
+}
+
+impl<T: Real> Law<T> {
+    pub fn within_limits() -> Self {
+        Self {
+            limits: true,
+            run: law_within_limits,
+        }
+    }
+
+    pub fn exact() -> Self {
+        Self {
+            limits: false,
+            run: exact_law,
+        }
+    }
+}
+
+#[inline(never)]
+fn law_within_limits<T: Real>(
+    controller: &Controller<T>,
+    input: &Input<'_, T>,
+    data: &mut Data<T>,
+) {
+    for (_, run) in Controller::WITHIN_LIMITS {
+        run(controller, input, data);
+    }
+}
+
+#[inline(never)]
+fn exact_law<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
+    for (_, run) in Controller::EXACT {
+        run(controller, input, data);
+    }
+    torque_demand(controller, input, data);
 }
 
 fn joint_state<T: Real>(_: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
@@ -214,7 +313,67 @@ fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
     );
 }
 
-/// The product's law.
+#[inline(never)]
+fn spectrum<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.spectrum
+        .update(&controller.levels, &data.rows, &data.dynamics.cholesky);
+}
+
+#[inline(never)]
+fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.whitened_motion.update(
+        &mut data.motion,
+        &controller.levels,
+        &data.dynamics,
+        &data.spectrum,
+        &data.joints,
+    );
+}
+
+#[inline(never)]
+fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    let null_force = Control::null_force(
+        &controller.compliance,
+        &data.dynamics,
+        &data.rows,
+        &data.motion,
+        &(data.posture - data.joints.q),
+    );
+    data.wish.update(&Ask {
+        levels: &controller.levels,
+        bounds: &controller.bounds,
+        torque_limit: controller.arm.torque_limit(),
+        dynamics: &data.dynamics,
+        rows: &data.rows,
+        spectrum: &data.spectrum,
+        motion: &data.whitened_motion,
+        null_force: &null_force,
+        residual: &data.observer.residual,
+    });
+}
+
+#[inline(never)]
+fn bounds<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.bounds.update(&controller.bounds, &data.joints);
+}
+
+fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.projection.update(&Wished {
+        acceleration: &data.wish.acceleration,
+        bounds: &data.bounds,
+        levels: &controller.levels,
+        dynamics: &data.dynamics,
+        rows: &data.rows,
+        spectrum: &data.spectrum,
+        null_velocity: &data.motion.null_velocity,
+    });
+}
+
+fn projected_demand<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.demand = TorqueDemand(data.wish.torque + data.projection.torque);
+}
+
+/// The exact law's.
 #[inline(never)]
 pub(super) fn torque_demand<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.demand = TorqueDemand::compensating(

@@ -4,7 +4,7 @@ use super::brake::{Brake, next};
 use super::controller::Controller;
 use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
-use super::stages::{StageName, kinematics_at, torque_demand};
+use super::stages::{Stage, StageName, kinematics_at};
 use super::usable::admit;
 use crate::fault::{Fault, Limits, Mode, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
@@ -71,14 +71,28 @@ impl<T: Real> Controller<T> {
         measurement: &Measurement<T>,
         reference: &Reference<T>,
     ) -> Step<T> {
-        self.step_with(state, measurement, reference, torque_demand)
+        self.step_by(state, measurement, reference, self.law.run)
     }
 
-    /// One cycle with another law in the place of [`StageName::TorqueDemand`],
+    /// One cycle with another law in the place of [`StageName::TorqueDemand`] of the exact law,
     /// everything around it unchanged: `law` reads the results above it and writes
-    /// [`Data::demand`]. For experiments that compare laws on equal terms.
+    /// [`Data::demand`]. For experiments that compare laws on equal terms, with controllers of
+    /// [`Controller::exact`].
     #[must_use]
     pub fn step_with(
+        &self,
+        state: &mut State<T>,
+        measurement: &Measurement<T>,
+        reference: &Reference<T>,
+        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
+    ) -> Step<T> {
+        self.step_by(state, measurement, reference, |controller, input, data| {
+            controller.run_exact_with(input, data, law);
+        })
+    }
+
+    #[inline(always)]
+    fn step_by(
         &self,
         state: &mut State<T>,
         measurement: &Measurement<T>,
@@ -93,10 +107,10 @@ impl<T: Real> Controller<T> {
         if let Err(fault) = admitted {
             return self.brake(state, &input, fault);
         }
-        self.run(&input, &mut state.data, law);
+        self.run_by(&input, &mut state.data, law);
         state.seen = true;
         match state.data.allocation.fault(&state.data.demand) {
-            None => state.answer(),
+            None => state.answer(self.law.limits),
             Some(fault) => self.brake(state, &input, fault),
         }
     }
@@ -116,14 +130,21 @@ impl<T: Real> Controller<T> {
     }
 
     fn run_until(&self, last: StageName, input: &Input<'_, T>, data: &mut Data<T>) {
-        for (name, run) in Self::STAGES {
-            if name <= last {
+        let stages: &[Stage<T>] = if last <= StageName::TaskRows {
+            &Self::OBSERVED
+        } else if self.law.limits {
+            &Self::STAGES
+        } else {
+            &Self::EXACT_STAGES
+        };
+        for (name, run) in stages {
+            if *name <= last {
                 run(self, input, data);
             }
         }
     }
 
-    /// The same with another law.
+    /// The same with another law, as in [`Controller::step_with`].
     #[inline]
     pub fn evaluate_with(
         &self,
@@ -132,27 +153,39 @@ impl<T: Real> Controller<T> {
         law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
     ) {
         data.follow_at_once();
-        self.run(input, data, law);
+        self.run_by(input, data, |controller, input, data| {
+            controller.run_exact_with(input, data, law);
+        });
     }
 
-    /// All stages, with `law` in the place of the torque demand.
+    /// The exact law, with `law` in the place of its torque demand.
     #[inline(always)]
-    fn run(
+    fn run_exact_with(
         &self,
         input: &Input<'_, T>,
         data: &mut Data<T>,
         law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
     ) {
-        for (name, run) in Self::STAGES {
-            if name < StageName::TorqueDemand {
-                run(self, input, data);
-            }
+        for (_, run) in Self::EXACT {
+            run(self, input, data);
         }
         law(self, input, data);
-        for (name, run) in Self::STAGES {
-            if name > StageName::TorqueDemand {
-                run(self, input, data);
-            }
+    }
+
+    /// All stages, with `law` as the law.
+    #[inline(always)]
+    fn run_by(
+        &self,
+        input: &Input<'_, T>,
+        data: &mut Data<T>,
+        law: impl FnOnce(&Self, &Input<'_, T>, &mut Data<T>),
+    ) {
+        for (_, run) in Self::OBSERVED {
+            run(self, input, data);
+        }
+        law(self, input, data);
+        for (_, run) in Self::ALLOWED {
+            run(self, input, data);
         }
     }
 }
@@ -172,7 +205,11 @@ impl<T: Real> Controller<T> {
         state.fault = Some(fault);
         let followed = state.brake.mode != Mode::Stopped && self.follows(state, input.measurement);
         let demand = if followed {
-            self.run_until(StageName::HoldingTorque, input, &mut state.data);
+            for (name, run) in Self::OBSERVED {
+                if name <= StageName::HoldingTorque {
+                    run(self, input, &mut state.data);
+                }
+            }
             state.seen = true;
             state.brake.blind_s = T::ZERO;
             state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
@@ -242,21 +279,27 @@ impl<T: Real> Controller<T> {
 impl<T: Real> State<T> {
     /// The results of a cycle without a fault.
     #[inline(always)]
-    fn answer(&mut self) -> Step<T> {
+    fn answer(&mut self, limits: bool) -> Step<T> {
         self.count_limits();
         let data = &self.data;
         let allocation = &data.allocation;
+        let mut active = Limits {
+            saturated: allocation.saturated,
+            rate_limited: allocation.rate_limited,
+            joining: data.followed.joining(),
+            ..Limits::NONE
+        };
+        if limits {
+            data.tell_limits(&mut active);
+        } else {
+            active.rank = data.hierarchy.deficient();
+        }
         Step {
             torque: allocation.torque,
             residual: *data.residual(),
             gravity: data.dynamics.gravity,
             coriolis: data.dynamics.coriolis,
-            status: Status::running(Limits {
-                saturated: allocation.saturated,
-                rank: data.hierarchy.deficient(),
-                rate_limited: allocation.rate_limited,
-                joining: data.followed.joining(),
-            }),
+            status: Status::running(active),
         }
     }
 }
@@ -267,8 +310,7 @@ mod tests {
 
     #[test]
     fn stages_stand_in_the_order_of_their_names() {
-        for (index, (name, _)) in Controller::<f64>::STAGES.into_iter().enumerate() {
-            assert_eq!(index, name as usize, "{}", name.text());
-        }
+        assert!(Controller::<f64>::STAGES.is_sorted_by(|(a, _), (b, _)| a < b));
+        assert!(Controller::<f64>::EXACT_STAGES.is_sorted_by(|(a, _), (b, _)| a < b));
     }
 }

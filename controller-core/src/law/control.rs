@@ -47,13 +47,24 @@ impl<T: Real> Control<T> {
         motion: &MotionSplit<T>,
         posture_error: &JointVector<T>,
     ) {
-        let transport = rows.rate_transposed_times(&motion.task_momentum);
         self.task_acceleration = hierarchy.solve(&rows.acceleration());
-        self.null_force = transport
-            - dynamics.coriolis
-            - dynamics.coriolis_transpose_times(&motion.task_velocity)
+        self.null_force = Self::null_force(compliance, dynamics, rows, motion, posture_error);
+    }
+
+    /// f \[Nm\], towards a posture that is `posture_error` q_d - q \[rad\] away.
+    #[must_use]
+    #[inline]
+    pub fn null_force(
+        compliance: &Compliance<T>,
+        dynamics: &Dynamics<T>,
+        rows: &TaskRows<T>,
+        motion: &MotionSplit<T>,
+        posture_error: &JointVector<T>,
+    ) -> JointVector<T> {
+        let transport = rows.rate_transposed_times(&motion.task_momentum);
+        transport - dynamics.coriolis - dynamics.coriolis_transpose_times(&motion.task_velocity)
             + compliance.stiffness * posture_error
-            - compliance.damping.times(dynamics, &motion.null_velocity);
+            - compliance.damping.times(dynamics, &motion.null_velocity)
     }
 }
 

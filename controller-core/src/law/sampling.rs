@@ -21,7 +21,9 @@ use crate::real::Real;
 mod mode;
 mod search;
 
+pub(crate) use mode::set_mass_matrix;
 pub use mode::{DampingRate, mode_at};
+pub(crate) use search::ranges as posture_ranges;
 
 /// What h lambda must stay below with `dead_cycles` cycles between measurement
 /// and torque: 2 cos(d pi / (2 d + 1)), where z^(d+1) - z^d + h lambda = 0 leaves

@@ -4,6 +4,7 @@ use super::followed::{Followed, Motion};
 use super::set::{Level, LevelPoint, Levels};
 use super::{Axes, orientation};
 use crate::arm::kinematics::{JacobianRows, Kinematics};
+use crate::fault::IndexSet;
 use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
@@ -22,8 +23,12 @@ pub struct TaskRows<T: Real> {
     /// (dJ/dt) dq \[m/s2\], or \[rad/s2\].
     pub bias: [T; MAX_ROWS],
     /// Commanded task acceleration, (12) without the bias:
-    /// ddx_d + K_d (dx_d - dx) + K_p x_err \[m/s2\], or \[rad/s2\].
+    /// ddx_d + K_d (dx_d - dx) + K_p x_err \[m/s2\], or \[rad/s2\]; within limits no error
+    /// calls for more speed than its level may have.
     pub commanded: [T; MAX_ROWS],
+    /// Levels whose error calls for more speed than they may have: it is shortened in
+    /// `commanded`, not in `error`.
+    pub shortened: IndexSet,
     /// x_err: x_d - x \[m\], or the chord of [`orientation::chord`] \[1\].
     pub error: [T; MAX_ROWS],
 }
@@ -40,6 +45,7 @@ impl<T: Real> TaskRows<T> {
             bias: [T::ZERO; MAX_ROWS],
             commanded: [T::ZERO; MAX_ROWS],
             error: [T::ZERO; MAX_ROWS],
+            shortened: IndexSet::NONE,
         }
     }
 
@@ -53,7 +59,9 @@ impl<T: Real> TaskRows<T> {
         joints: &JointState<T>,
     ) {
         self.count = 0;
-        for (level, followed) in levels.as_slice().iter().zip(followed.levels()) {
+        self.shortened = IndexSet::NONE;
+        let levels = levels.as_slice().iter().zip(followed.levels());
+        for (number, (level, followed)) in levels.enumerate() {
             let desired = &followed.now;
             match &level.tracked {
                 LevelPoint::Position(link, offset) => {
@@ -61,7 +69,7 @@ impl<T: Real> TaskRows<T> {
                     let error = desired.position() - motion.x;
                     let commanded = Commanded::new(level, desired, error, motion.dx);
                     let rows = kinematics.point_jacobian(*link, &motion);
-                    self.push(level.axes, &commanded, joints, &rows);
+                    self.push(number, level.axes, &commanded, joints, &rows);
                 }
                 LevelPoint::Orientation(link) => {
                     let motion = kinematics.link(*link);
@@ -69,7 +77,7 @@ impl<T: Real> TaskRows<T> {
                     let error = orientation::chord(&desired.place, &actual);
                     let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
                     let rows = kinematics.angular_jacobian(*link);
-                    self.push(level.axes, &commanded, joints, &rows);
+                    self.push(number, level.axes, &commanded, joints, &rows);
                 }
             }
         }
@@ -79,12 +87,14 @@ impl<T: Real> TaskRows<T> {
     #[inline(always)]
     fn push(
         &mut self,
+        number: usize,
         axes: Axes,
         commanded: &Commanded<T>,
         joints: &JointState<T>,
         all: &JacobianRows<T>,
     ) {
         let start = self.count;
+        self.shortened.insert_if(number, commanded.shortened);
         for axis in 0..3 {
             let place = self.count;
             if axes.contains(axis) && place < MAX_ROWS {
@@ -151,6 +161,8 @@ struct Commanded<T: Real> {
     error: Vector3<T>,
     /// As in [`TaskRows::commanded`].
     acceleration: Vector3<T>,
+    /// Whether the error was shortened for it.
+    shortened: bool,
 }
 
 impl<T: Real> Commanded<T> {
@@ -159,9 +171,12 @@ impl<T: Real> Commanded<T> {
     fn new(level: &Level<T>, desired: &Motion<T>, error: Vector3<T>, velocity: Vector3<T>) -> Self {
         let rate = level.axes.select(&(desired.velocity - velocity));
         let error = level.axes.select(&error);
+        let share = level.filters.error_share(&error);
+        let followed = error * share;
         Self {
             error,
-            acceleration: desired.acceleration + level.damping * rate + level.stiffness * error,
+            acceleration: desired.acceleration + level.damping * rate + level.stiffness * followed,
+            shortened: share < T::ONE,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Tasks as plain data: what a priority level tracks, and the set of all levels.
 
+use super::level_limits::{LevelFilters, LevelLimits, length};
 use super::{Axes, Target, orientation};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{ArmModel, Link, LinkPoint};
@@ -56,6 +57,9 @@ pub struct Task {
     pub axes: Axes,
     /// Gains.
     pub gains: TaskGains,
+    /// What happens near singularities and far from the target; none: what the place of the
+    /// level calls for, [`LevelLimits::FIRST`] or [`LevelLimits::BELOW`].
+    pub limits: Option<LevelLimits>,
 }
 
 impl Task {
@@ -66,6 +70,7 @@ impl Task {
             tracked: Tracked::Position(point),
             axes,
             gains,
+            limits: None,
         }
     }
 
@@ -76,6 +81,7 @@ impl Task {
             tracked: Tracked::Orientation(link),
             axes,
             gains,
+            limits: None,
         }
     }
 
@@ -89,7 +95,11 @@ impl Task {
         }
         let (TaskGains { stiffness, damping }, used) = (&self.gains, self.axes.flags());
         gain::validate(Gain::TaskStiffness, level, stiffness, used)?;
-        gain::validate(Gain::TaskDamping, level, damping, used)
+        gain::validate(Gain::TaskDamping, level, damping, used)?;
+        match &self.limits {
+            Some(limits) => limits.validate(level),
+            None => Ok(()),
+        }
     }
 }
 
@@ -191,6 +201,76 @@ pub(crate) struct Level<T: Real> {
     pub stiffness: Matrix3<T>,
     /// K_d \[1/s\].
     pub damping: Matrix3<T>,
+    /// First row of the stack that is the level's.
+    pub start: usize,
+    /// Number of rows.
+    pub size: usize,
+    /// K_d of the rows, by rows.
+    row_damping: [[T; 3]; 3],
+    /// What the rows are multiplied by where mobilities are compared \[1\], of orientations
+    /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH) \[m\].
+    pub length: T,
+    pub filters: LevelFilters<T>,
+}
+
+impl<T: Real> Level<T> {
+    /// At the place `number`, counted from 0, with its rows from `start` on.
+    fn new(task: &Task, number: usize, start: usize, arm: &ArmModel<T>) -> Self {
+        let mut reach = T::ZERO;
+        let tracked = match task.tracked {
+            Tracked::Position(LinkPoint { link, offset }) => {
+                reach = arm.reach(&LinkPoint { link, offset }) + T::from_f64(REACH_MARGIN_M);
+                LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
+            }
+            Tracked::Orientation(link) => LevelPoint::Orientation(link),
+        };
+        // The others are not read: whatever stands there stays out.
+        let used = |gain: &[[f64; 3]; 3]| {
+            Matrix3::from_fn(|row, column| {
+                let both = task.axes.contains(row) && task.axes.contains(column);
+                T::from_f64(if both { gain[row][column] } else { 0.0 })
+            })
+        };
+        let mut level = Self {
+            tracked,
+            axes: task.axes,
+            reach,
+            stiffness: used(&task.gains.stiffness),
+            damping: used(&task.gains.damping),
+            start,
+            size: task.axes.count().min(3),
+            row_damping: [[T::ZERO; 3]; 3],
+            length: T::from_f64(length(task)),
+            filters: LevelFilters::new(task, number),
+        };
+        level.set_row_damping();
+        level
+    }
+
+    fn set_row_damping(&mut self) {
+        let mut rows = (0..3).filter(|&axis| self.axes.contains(axis));
+        let axes: [Option<usize>; 3] = core::array::from_fn(|_| rows.next());
+        for (damping, row) in self.row_damping.iter_mut().zip(axes) {
+            for (damping, column) in damping.iter_mut().zip(axes) {
+                if let (Some(row), Some(column)) = (row, column) {
+                    *damping = self.damping[(row, column)];
+                }
+            }
+        }
+    }
+
+    /// The rows of the stack that are the level's.
+    #[inline(always)]
+    pub fn rows(&self) -> core::ops::Range<usize> {
+        self.start..self.start + self.size
+    }
+
+    /// K_d x, by rows of the level.
+    #[inline(always)]
+    pub fn damping_of_rows(&self, x: &[T; 3]) -> [T; 3] {
+        self.row_damping
+            .map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
+    }
 }
 
 /// All levels in the precision of the controller, highest priority first.
@@ -203,39 +283,19 @@ pub(crate) struct Levels<T: Real> {
 
 impl<T: Real> Levels<T> {
     pub fn new(set: &TaskSet, arm: &ArmModel<T>) -> Self {
-        let mut levels = Self {
-            levels: [Level {
-                tracked: LevelPoint::Orientation(Link::L7),
-                axes: Axes::XYZ,
-                reach: T::ZERO,
-                stiffness: zeros(),
-                damping: zeros(),
-            }; MAX_LEVELS],
+        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(1.0, 1.0));
+        let mut start = 0;
+        let mut tasks = set.tasks().iter();
+        let mut next = |number| {
+            let level = Level::new(tasks.next().unwrap_or(&UNUSED), number, start, arm);
+            start += level.size;
+            level
+        };
+        Self {
+            levels: core::array::from_fn(&mut next),
             count: set.count,
             shoulder: arm.shoulder(),
-        };
-        for (level, task) in levels.levels.iter_mut().zip(set.tasks()) {
-            level.axes = task.axes;
-            level.tracked = match task.tracked {
-                Tracked::Position(LinkPoint { link, offset }) => {
-                    let reach = arm.reach(&LinkPoint { link, offset });
-                    level.reach = reach + T::from_f64(REACH_MARGIN_M);
-                    LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
-                }
-                Tracked::Orientation(link) => LevelPoint::Orientation(link),
-            };
-            let TaskGains { stiffness, damping } = &task.gains;
-            for row in 0..3 {
-                for column in 0..3 {
-                    // The others are not read: whatever stands there stays out.
-                    if task.axes.contains(row) && task.axes.contains(column) {
-                        level.stiffness[(row, column)] = T::from_f64(stiffness[row][column]);
-                        level.damping[(row, column)] = T::from_f64(damping[row][column]);
-                    }
-                }
-            }
         }
-        levels
     }
 
     /// The same levels with K_p = `stiffness` \[1/s2\] and K_d = `damping` \[1/s\] on every
@@ -245,6 +305,15 @@ impl<T: Real> Levels<T> {
             let uniform =
                 |gain: T| Matrix3::from_diagonal(&level.axes.select(&Vector3::repeat(gain)));
             (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
+        }
+        self.exact()
+    }
+
+    /// The same levels, which follow every error however large.
+    pub fn exact(mut self) -> Self {
+        for level in &mut self.levels {
+            // Farther than any error that is believed.
+            level.filters.error_speed = T::from_f64(1e15);
         }
         self
     }

@@ -61,7 +61,7 @@ fn mass_factor<T: Real>(arm: &ArmModel<T>, posture: &[f64; DOF]) -> Cholesky<T> 
 /// v = (-y, x, 0, 0). Carried to the frame of joint j, H has the moment M_ij of the
 /// momentum about z as H_xy - H_yx.
 #[inline(never)]
-fn set_mass_matrix<T: Real>(
+pub(crate) fn set_mass_matrix<T: Real>(
     arm: &ArmModel<T>,
     posture: &[f64; DOF],
     mass_matrix: &mut JointMatrix<T>,

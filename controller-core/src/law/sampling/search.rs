@@ -28,7 +28,7 @@ const SHARES: [f64; DOF] = [
 ];
 
 /// Where the position of each joint can change M: its range, of continuous joints one turn.
-fn ranges<T: Real>(arm: &ArmModel<T>) -> [[f64; 2]; DOF] {
+pub(crate) fn ranges<T: Real>(arm: &ArmModel<T>) -> [[f64; 2]; DOF] {
     let [least, greatest] = arm.position_range();
     let mut ranges = [[-PI, PI]; DOF];
     for ((range, min), max) in ranges.iter_mut().zip(least).zip(greatest) {

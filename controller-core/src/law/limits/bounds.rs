@@ -1,0 +1,144 @@
+//! What acceleration each joint may have now, so that it keeps its range and its speed limit in
+//! the cycles to come.
+//!
+//! With the distance d to an end of the range and the speed v towards it a joint may go at most
+//!
+//! ```text
+//! v_p(d) = k d                                 near the end,       slope v_p' = k
+//!          sqrt(2 A (d - d0)),  d0 = A/(2 k^2) beyond 2 d0 of it,  slope v_p' = A/v_p
+//! a      <= min(kv (v_p - v) - v_p' v, kv (V - v)),    -alpha <= a <= alpha
+//! ```
+//!
+//! so it brakes with A, and comes to the end exponentially. Both ends bound from their side; where
+//! they contradict each other each gives way to the other.
+
+use crate::arm::{ArmModel, JointLimits};
+use crate::joint::{DOF, JointState, JointVector, zeros};
+use crate::real::Real;
+
+/// What the bounds are made from, in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointBounds<T: Real> {
+    /// Ends of the ranges less the margin \[rad\].
+    ends: [JointVector<T>; 2],
+    /// V \[rad/s\].
+    speed: JointVector<T>,
+    /// alpha \[rad/s2\].
+    acceleration: JointVector<T>,
+    /// 1/alpha \[s2/rad\].
+    pub(super) inverse_acceleration: JointVector<T>,
+    /// A \[rad/s2\].
+    braking: JointVector<T>,
+    /// kv \[1/s\].
+    speed_gain: JointVector<T>,
+    /// k \[1/s\].
+    position_gain: T,
+    /// d0 = A/(2 k^2) \[rad\].
+    turn: JointVector<T>,
+}
+
+impl<T: Real> JointBounds<T> {
+    /// Of no joint: for a law without bounds.
+    pub(crate) const fn none() -> Self {
+        Self {
+            ends: [zeros(); 2],
+            speed: zeros(),
+            acceleration: zeros(),
+            inverse_acceleration: zeros(),
+            braking: zeros(),
+            speed_gain: zeros(),
+            position_gain: T::ZERO,
+            turn: zeros(),
+        }
+    }
+
+    pub(crate) fn new(arm: &ArmModel<T>, limits: &JointLimits) -> Self {
+        let k = limits.position_gain;
+        let of = |values: &[f64; DOF]| JointVector::from(values.map(T::from_f64));
+        let [least, greatest] = arm.position_range();
+        let margin = JointVector::from([T::from_f64(limits.margin); DOF]);
+        Self {
+            ends: [least + margin, greatest - margin],
+            speed: arm.speed_limit() * T::from_f64(limits.speed_share),
+            acceleration: of(&limits.acceleration),
+            inverse_acceleration: of(&limits.acceleration.map(|alpha| 1.0 / alpha)),
+            braking: of(&limits.braking),
+            speed_gain: of(&limits.speed_gain),
+            position_gain: T::from_f64(k),
+            turn: of(&limits.braking.map(|a| a / (2.0 * k * k))),
+        }
+    }
+
+    /// Largest acceleration \[rad/s2\] of a joint towards an end `distance` \[rad\] away that
+    /// it approaches at `speed` \[rad/s\].
+    #[inline(always)]
+    fn towards(&self, joint: usize, distance: T, speed: T) -> T {
+        let (braking, turn) = (self.braking[joint], self.turn[joint]);
+        let (gain, near) = (self.speed_gain[joint], self.position_gain);
+        let beyond = (braking + braking) * (distance - turn);
+        let root = beyond.larger(T::from_f64(1e-12)).square_root();
+        let linear = distance < turn + turn;
+        let allowed = if linear { near * distance } else { root };
+        let slope = if linear { near } else { braking / root };
+        let by_range = gain * (allowed - speed) - slope * speed;
+        let by_speed = gain * (self.speed[joint] - speed);
+        let alpha = self.acceleration[joint];
+        let least = if by_range < by_speed {
+            by_range
+        } else {
+            by_speed
+        };
+        least.limited(-alpha, alpha)
+    }
+}
+
+/// Bounds of the joint accelerations in one cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccelerationBounds<T: Real> {
+    /// lo \[rad/s2\].
+    pub least: JointVector<T>,
+    /// hi \[rad/s2\].
+    pub greatest: JointVector<T>,
+}
+
+impl<T: Real> AccelerationBounds<T> {
+    /// No motion allowed.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            least: zeros(),
+            greatest: zeros(),
+        }
+    }
+
+    /// Of arms that move like this.
+    #[inline]
+    pub(crate) fn update(&mut self, bounds: &JointBounds<T>, joints: &JointState<T>) {
+        let [low, high] = &bounds.ends;
+        for i in 0..DOF {
+            let (q, dq) = (joints.q[i], joints.dq[i]);
+            let up = bounds.towards(i, high[i] - q, dq);
+            let down = -bounds.towards(i, q - low[i], -dq);
+            self.greatest[i] = up.larger(down);
+            self.least[i] = if up < down { up } else { down };
+        }
+    }
+
+    /// Whether `acceleration` \[rad/s2\] is within all bounds.
+    #[must_use]
+    #[inline]
+    pub fn contain(&self, acceleration: &JointVector<T>) -> bool {
+        let mut within = true;
+        for i in 0..DOF {
+            let a = acceleration[i];
+            within &= (a >= self.least[i]) & (a <= self.greatest[i]);
+        }
+        within
+    }
+}
+
+impl<T: Real> Default for AccelerationBounds<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

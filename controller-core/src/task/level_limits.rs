@@ -1,0 +1,198 @@
+//! How a level behaves where it loses a direction of motion.
+
+use super::Task;
+use super::set::Tracked;
+use crate::error::{ConfigError, LevelLimit};
+use crate::joint::{Matrix3, Vector3};
+use crate::ranges::ORIENTATION_LENGTH;
+use crate::real::Real;
+
+/// What happens to a level near singularities and far from its target. Orientations count at
+/// [`ORIENTATION_LENGTH`] from their origin. Plain `f64` data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelLimits {
+    /// z0 \[1/kg\]: below this mobility a direction is driven less than the exact law does. An
+    /// arm that feels 1/z0 along it, 20 kg for 0.05, counts as heavy.
+    pub drive_mobility: f64,
+    /// zr \[1/kg\]: below this mobility a direction is given to the levels below, by and by.
+    pub release_mobility: f64,
+    /// v_err \[m/s\]: no error calls for more speed than this.
+    pub error_speed: f64,
+    /// vm \[m/s\]: no more speed is asked for along a direction that is lost.
+    pub lost_speed: f64,
+    /// zw \[1/kg\]: where joints are at their bounds, a direction with this mobility resists them
+    /// as much again as the arm does.
+    pub stiff_mobility: f64,
+}
+
+impl LevelLimits {
+    /// Of the first level, unless a task says otherwise.
+    pub const FIRST: Self = Self {
+        drive_mobility: 0.05,
+        release_mobility: 0.005,
+        error_speed: 0.3,
+        lost_speed: 0.15,
+        stiff_mobility: 0.04,
+    };
+
+    /// Of the levels below it.
+    pub const BELOW: Self = Self {
+        drive_mobility: 0.01,
+        release_mobility: 0.005,
+        error_speed: 0.1,
+        lost_speed: 0.03,
+        stiff_mobility: 0.06,
+    };
+
+    /// By name, value and what is allowed.
+    pub(super) fn validate(&self, level: usize) -> Result<(), ConfigError> {
+        for (limit, value) in [
+            (LevelLimit::DriveMobility, self.drive_mobility),
+            (LevelLimit::ReleaseMobility, self.release_mobility),
+            (LevelLimit::ErrorSpeed, self.error_speed),
+            (LevelLimit::LostSpeed, self.lost_speed),
+            (LevelLimit::StiffMobility, self.stiff_mobility),
+        ] {
+            let [min, mut max] = limit.range();
+            if limit == LevelLimit::ReleaseMobility {
+                // What is released is driven less, or it would be driven twice.
+                max = self.drive_mobility;
+            }
+            if !(value >= min && value <= max) {
+                return Err(ConfigError::LevelLimits {
+                    level,
+                    limit,
+                    value,
+                    allowed: [min, max],
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// 1/z down to a threshold, below it a line that ends at twice 1/threshold: what grew without
+/// bound meets an end, and does so without a kink.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Filter<T: Real> {
+    /// \[1/kg\].
+    pub threshold: T,
+    /// \[kg\].
+    pub inverse: T,
+}
+
+impl<T: Real> Filter<T> {
+    fn new(threshold: f64) -> Self {
+        Self {
+            threshold: T::from_f64(threshold),
+            inverse: T::from_f64(1.0 / threshold),
+        }
+    }
+
+    /// Of a mobility z \[1/kg\]: \[kg\].
+    #[inline(always)]
+    pub fn of(&self, z: T) -> T {
+        let z = z.larger(T::ZERO);
+        let exact = T::ONE / z.larger(self.threshold);
+        let line = (T::ONE + T::ONE - z * self.inverse) * self.inverse;
+        if z >= self.threshold { exact } else { line }
+    }
+}
+
+/// [`LevelLimits`] of a task with its gains, in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LevelFilters<T: Real> {
+    pub drive: Filter<T>,
+    pub keep: Filter<T>,
+    /// Largest command \[m/s2\] along a direction that is lost.
+    lost_command: T,
+    /// 1/(3 z0) \[kg\]: from there on a command has no limit.
+    free: T,
+    /// zw^3 \[1/kg3\].
+    pub stiff_cubed: T,
+    /// K_d^-1 K_p \[1/s\], on the controlled axes: the speed that an error calls for.
+    pub approach: Matrix3<T>,
+    /// Most of it \[m/s\], or \[rad/s\].
+    pub error_speed: T,
+}
+
+impl<T: Real> LevelFilters<T> {
+    /// Of a task at the place `level`, counted from 0.
+    pub fn new(task: &Task, level: usize) -> Self {
+        let limits = task.limits.unwrap_or(match level {
+            0 => LevelLimits::FIRST,
+            _ => LevelLimits::BELOW,
+        });
+        let mut rate = 0.0;
+        for axis in 0..3 {
+            if task.axes.contains(axis) {
+                rate += task.gains.damping[axis][axis];
+            }
+        }
+        let rows = task.axes.count().max(1);
+        let (z0, stiff) = (limits.drive_mobility, limits.stiff_mobility);
+        Self {
+            drive: Filter::new(z0),
+            keep: Filter::new(limits.release_mobility),
+            lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed),
+            free: T::from_f64(1.0 / (3.0 * z0)),
+            stiff_cubed: T::from_f64(stiff * stiff * stiff),
+            approach: approach(task).map(T::from_f64),
+            error_speed: T::from_f64(limits.error_speed / length(task)),
+        }
+    }
+
+    /// Largest command \[m/s2\] along a direction of mobility z \[1/kg\].
+    #[inline(always)]
+    pub fn most_command(&self, z: T) -> T {
+        let lost = (T::ONE - z * self.free).larger(T::from_f64(1e-9));
+        self.lost_command / lost
+    }
+
+    /// Share of the error that a level may follow, given the error: at most 1.
+    #[inline(always)]
+    pub fn error_share(&self, error: &Vector3<T>) -> T {
+        let speed = self.approach * error;
+        let most = self.error_speed;
+        most / speed.dot(&speed).square_root().larger(most)
+    }
+}
+
+/// What rows of a task are multiplied by, so that their mobilities are in 1/kg.
+pub(crate) fn length(task: &Task) -> f64 {
+    match task.tracked {
+        Tracked::Position(_) => 1.0,
+        Tracked::Orientation(_) => ORIENTATION_LENGTH,
+    }
+}
+
+/// K_d^-1 K_p on the controlled axes, zero elsewhere.
+fn approach(task: &Task) -> Matrix3<f64> {
+    let (mut damping, mut speeds) = (Matrix3::identity(), Matrix3::zeros());
+    for row in 0..3 {
+        for column in 0..3 {
+            if task.axes.contains(row) && task.axes.contains(column) {
+                damping[(row, column)] = task.gains.damping[row][column];
+                speeds[(row, column)] = task.gains.stiffness[row][column];
+            }
+        }
+    }
+    // Gauss and Jordan; K_d is positive definite and needs no other pivots.
+    for pivot in 0..3 {
+        for row in 0..3 {
+            if row != pivot {
+                let share = damping[(row, pivot)] / damping[(pivot, pivot)];
+                for column in 0..3 {
+                    damping[(row, column)] -= share * damping[(pivot, column)];
+                    speeds[(row, column)] -= share * speeds[(pivot, column)];
+                }
+            }
+        }
+    }
+    for row in 0..3 {
+        for column in 0..3 {
+            speeds[(row, column)] /= damping[(row, row)];
+        }
+    }
+    speeds
+}

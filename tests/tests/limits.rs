@@ -1,0 +1,5 @@
+//! The law within limits, against the exact law where nothing is at a limit, and piece by piece
+//! against what defines the pieces.
+
+#[path = "limits/equality.rs"]
+mod equality;
