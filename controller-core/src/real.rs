@@ -22,6 +22,8 @@ pub trait Real:
     const ONE: Self;
     /// 1/2.
     const HALF: Self;
+    /// Larger than any number.
+    const INFINITE: Self;
     /// Share of a pivot of a 7 x 7 elimination of ordinary condition that may be rounding.
     const PIVOT_SHARE: Self;
 
@@ -118,6 +120,7 @@ macro_rules! real {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const HALF: Self = 0.5;
+            const INFINITE: Self = Self::INFINITY;
             const PIVOT_SHARE: Self = $pivot_share;
 
             #[inline(always)]

@@ -47,11 +47,10 @@ impl<T: Real> Controller<T> {
         if config.null_space.posture != Posture::Constant {
             return Err(ConfigError::IntegratedPosture);
         }
-        let mut controller = Self::exact(arm, config)?;
+        let mut controller = Self::made(arm, config, Law::within_limits())?;
         controller.levels = Levels::new(&config.tasks, &controller.arm);
         let limits = joint_limits(arm, &controller.arm, config.cycle_s, config.dead_cycles);
         controller.bounds = JointBounds::new(&controller.arm, &limits);
-        controller.law = Law::within_limits();
         Ok(controller)
     }
 
@@ -62,27 +61,36 @@ impl<T: Real> Controller<T> {
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be.
     pub fn exact(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        Self::made(arm, config, Law::exact())
+    }
+
+    fn made(
+        arm: &ArmParameters,
+        config: &ControllerConfig,
+        law: Law<T>,
+    ) -> Result<Self, ConfigError> {
         match &ArmModel::new(arm) {
             Ok(arm) => match config.validate(arm) {
-                Ok(fastest_mode) => Ok(Self::converted(arm, config, fastest_mode)),
+                Ok(fastest_mode) => Ok(Self::converted(arm, config, fastest_mode, law)),
                 Err(error) => Err(error),
             },
             Err(error) => Err(ConfigError::Arm(*error)),
         }
     }
 
-    /// No check, the exact law. Behind a call, so that the parts are made in the place of the
-    /// result and nowhere else.
+    /// No check, no bounds of joints. Behind a call, so that the parts are made in the place of
+    /// the result and nowhere else.
     #[inline(never)]
     pub(super) fn converted(
         arm: &ArmModel<T>,
         config: &ControllerConfig,
         fastest_mode: DampingRate,
+        law: Law<T>,
     ) -> Self {
         let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
-            law: Law::exact(),
+            law,
             levels: Levels::new(&config.tasks, arm).exact(),
             bounds: JointBounds::none(),
             compliance: Compliance::new(&config.null_space),

@@ -3,6 +3,7 @@
 use super::config::ControllerConfig;
 use super::controller::Controller;
 use super::data::{Data, Input};
+use super::stages::Law;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
 use crate::joint::DOF;
@@ -44,7 +45,7 @@ impl<T: Real> Inspection<T> {
             posture: [0.0; DOF],
         };
         Ok(Self {
-            controller: Controller::converted(&arm, &config, unknown),
+            controller: Controller::converted(&arm, &config, unknown, Law::exact()),
         })
     }
 

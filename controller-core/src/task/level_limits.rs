@@ -99,12 +99,13 @@ impl<T: Real> Filter<T> {
     }
 }
 
-/// [`LevelLimits`] of a task with its gains, in the precision of the controller.
+/// [`LevelLimits`] of a task with its gains, in the precision of the controller and for rows as
+/// they are: of orientations in rad, with mobilities in 1/(kg m2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LevelFilters<T: Real> {
     pub drive: Filter<T>,
     pub keep: Filter<T>,
-    /// Largest command \[m/s2\] along a direction that is lost.
+    /// Largest command \[m/s2\], or \[rad/s2\], along a direction that is lost.
     lost_command: T,
     /// 1/(3 z0) \[kg\]: from there on a command has no limit.
     free: T,
@@ -130,15 +131,19 @@ impl<T: Real> LevelFilters<T> {
             }
         }
         let rows = task.axes.count().max(1);
-        let (z0, stiff) = (limits.drive_mobility, limits.stiff_mobility);
+        // Of the rows as they are: those of orientations are in 1/(kg m2).
+        let length = length(task);
+        let mobility = |limit: f64| limit / (length * length);
+        let z0 = mobility(limits.drive_mobility);
+        let stiff = mobility(limits.stiff_mobility);
         Self {
             drive: Filter::new(z0),
-            keep: Filter::new(limits.release_mobility),
-            lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed),
+            keep: Filter::new(mobility(limits.release_mobility)),
+            lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed / length),
             free: T::from_f64(1.0 / (3.0 * z0)),
             stiff_cubed: T::from_f64(stiff * stiff * stiff),
             approach: approach(task).map(T::from_f64),
-            error_speed: T::from_f64(limits.error_speed / length(task)),
+            error_speed: T::from_f64(limits.error_speed / length),
         }
     }
 
@@ -158,7 +163,7 @@ impl<T: Real> LevelFilters<T> {
     }
 }
 
-/// What rows of a task are multiplied by, so that their mobilities are in 1/kg.
+/// What a row of a task is multiplied by to be a way \[m\].
 pub(crate) fn length(task: &Task) -> f64 {
     match task.tracked {
         Tracked::Position(_) => 1.0,

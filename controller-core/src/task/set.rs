@@ -207,8 +207,8 @@ pub(crate) struct Level<T: Real> {
     pub size: usize,
     /// K_d of the rows, by rows.
     row_damping: [[T; 3]; 3],
-    /// What the rows are multiplied by where mobilities are compared \[1\], of orientations
-    /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH) \[m\].
+    /// What a row is multiplied by to be a way \[m\]: of orientations
+    /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH), else 1.
     pub length: T,
     pub filters: LevelFilters<T>,
 }

@@ -109,7 +109,9 @@ fn apart<T: Real>(wanted: usize) -> Apart {
             }
         }
         reference.posture += states.vector() * 0.2;
-        let residual = states.vector().component_mul(&JointVector::from([3.0, 3.0, 1.0, 1.0, 0.1, 0.1, 0.01]));
+        let residual = states
+            .vector()
+            .component_mul(&JointVector::from([3.0, 3.0, 1.0, 1.0, 0.1, 0.1, 0.01]));
         let Some([within, exact]) = torques(laws, &joints, &reference, &residual) else {
             continue;
         };

@@ -14,14 +14,14 @@ pub struct Eigen<T: Real> {
     /// Entry k is the one off the diagonal that row and column k do not have.
     off: [T; 3],
     /// E by rows.
-    pub vectors: [[T; 3]; 3],
+    vectors: [[T; 3]; 3],
 }
 
 impl<T: Real> Eigen<T> {
-    /// Of a matrix with this `diagonal`, and with entry k of `off` at the place whose row and
-    /// column are the other two. Rows from `size` on are zero and stay out.
+    /// Of a matrix by its diagonal, and by its entries off it, entry k at the place whose row
+    /// and column are the other two. Rows from `size` on are zero and stay out.
     #[inline(always)]
-    pub fn new(diagonal: [T; 3], off: [T; 3], size: usize) -> Self {
+    pub fn new(&[diagonal, off]: &[[T; 3]; 2], size: usize) -> Self {
         let (zero, one) = (T::ZERO, T::ONE);
         let mut eigen = Self {
             values: diagonal,
@@ -73,16 +73,9 @@ impl<T: Real> Eigen<T> {
         }
     }
 
-    /// E x.
+    /// Column `k` of E: the eigenvector of value `k`.
     #[inline(always)]
-    pub fn times(vectors: &[[T; 3]; 3], x: &[T; 3]) -> [T; 3] {
-        vectors.map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
-    }
-
-    /// E^T x.
-    #[inline(always)]
-    pub fn transposed_times(vectors: &[[T; 3]; 3], x: &[T; 3]) -> [T; 3] {
-        let [first, second, third] = vectors;
-        core::array::from_fn(|k| first[k] * x[0] + second[k] * x[1] + third[k] * x[2])
+    pub fn column(&self, k: usize) -> [T; 3] {
+        self.vectors.map(|row| *row.get(k).unwrap_or(&T::ZERO))
     }
 }

@@ -5,10 +5,9 @@
 //! F_i = E d E^T Ah_i (s - V),   V = sum over the levels j below of A_j^T F_j
 //! ```
 
-use super::eigen::Eigen;
 use super::spectrum::Spectrum;
 use crate::arm::dynamics::Dynamics;
-use crate::joint::{JointState, JointVector, zeros};
+use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::motion::MotionSplit;
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
@@ -46,55 +45,43 @@ impl<T: Real> WhitenedMotion<T> {
         let cholesky = &dynamics.cholesky;
         let whitened = cholesky.upper_times(&joints.dq);
         self.null = whitened;
-        for k in 0..MAX_ROWS {
-            if k < spectrum.count() {
-                let direction = &spectrum.directions[k];
-                let along = direction.dot(&whitened);
-                self.along[k] = along;
-                self.null -= direction * (spectrum.keep[k] * along);
+        for (along, direction) in self.along.iter_mut().zip(spectrum.directions()) {
+            *along = direction.along.dot(&whitened);
+            let kept = direction.keep * *along;
+            for i in 0..DOF {
+                self.null[i] -= direction.along[i] * kept;
             }
         }
         split.null_velocity = cholesky.solve_upper(&self.null);
         split.task_velocity = joints.dq - split.null_velocity;
-        self.set_momenta(&mut split.task_momentum, levels, spectrum, &whitened);
+        self.set_momenta(&mut split.task_momentum, levels, spectrum, whitened);
     }
 
-    /// F, from the last level to the first.
+    /// F, from the last level to the first; `rest` is s - V.
     #[inline(always)]
     fn set_momenta(
         &self,
         momentum: &mut [T; MAX_ROWS],
         levels: &Levels<T>,
         spectrum: &Spectrum<T>,
-        whitened: &JointVector<T>,
+        mut rest: JointVector<T>,
     ) {
-        let mut carried: Option<JointVector<T>> = None;
         for level in levels.as_slice().iter().rev() {
-            let mut along = [T::ZERO; 3];
-            let mut vectors = [[T::ZERO; 3]; 3];
-            for k in 0..level.size {
-                let place = level.start + k;
-                if place < MAX_ROWS {
-                    vectors[k] = spectrum.vectors[place];
-                    let speed = match &carried {
-                        None => self.along[place],
-                        Some(below) => spectrum.directions[place].dot(&(whitened - below)),
-                    };
-                    along[k] = spectrum.drive[place] * speed;
-                }
+            let mut of_level = [T::ZERO; 3];
+            for direction in spectrum.of(level) {
+                let speed = direction.along.dot(&rest);
+                direction.add_part(direction.drive * speed, &mut of_level);
             }
-            let of_level = Eigen::times(&vectors, &along);
-            for k in 0..level.size {
-                let place = level.start + k;
-                if place < MAX_ROWS {
-                    // Of the unscaled rows of J.
-                    momentum[place] = of_level[k] * level.length;
-                    if level.start > 0 {
-                        let share = spectrum.rows[place] * of_level[k];
-                        carried = Some(match carried {
-                            None => share,
-                            Some(below) => below + share,
-                        });
+            let Some(momentum) = momentum.get_mut(level.rows()) else {
+                return;
+            };
+            for ((momentum, direction), of_row) in
+                momentum.iter_mut().zip(spectrum.of(level)).zip(of_level)
+            {
+                *momentum = of_row;
+                if level.start > 0 {
+                    for i in 0..DOF {
+                        rest[i] -= direction.row[i] * of_row;
                     }
                 }
             }

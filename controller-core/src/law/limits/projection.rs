@@ -20,7 +20,7 @@ use super::tableau::{Tableau, WIDTH};
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
-use crate::ranges::{DISTURBANCE_SMOOTHING, MAX_LEVELS, MAX_ROWS, PIVOTS, SOFTENING_DISTURBANCE};
+use crate::ranges::{DISTURBANCE_SMOOTHING, MAX_LEVELS, PIVOTS, SOFTENING_DISTURBANCE};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 use crate::task::set::Levels;
@@ -93,24 +93,24 @@ impl<T: Real> Projection<T> {
             self.project(wished);
         }
         let share = T::from_f64(DISTURBANCE_SMOOTHING);
-        for (smoothed, &now) in self.smoothed.iter_mut().zip(&self.disturbance) {
+        let levels = wished.levels.as_slice().iter();
+        for ((smoothed, &now), _) in self.smoothed.iter_mut().zip(&self.disturbance).zip(levels) {
             *smoothed += (now - *smoothed) * share;
         }
     }
 
     #[inline(never)]
     fn project(&mut self, wished: &Wished<'_, T>) {
-        let mut tableau = self.compliance(wished);
         let bounds = wished.bounds;
-        let mut search = Search::new(&tableau, wished.acceleration, bounds);
+        let mut search = Search::new(self.compliance(wished), wished.acceleration, bounds);
         self.pivots = 0;
-        while self.pivots < PIVOTS && search.exchange(&mut tableau) {
+        while self.pivots < PIVOTS && search.exchange() {
             self.pivots += 1;
         }
         self.at_bound = [IndexSet::NONE; 2];
         let mut within = true;
         for i in 0..DOF {
-            let (a, low, high) = (search.acceleration[i], bounds.least[i], bounds.greatest[i]);
+            let (a, low, high) = (search.acceleration(i), bounds.least[i], bounds.greatest[i]);
             within &= (a >= low) & (a <= high);
             let cut = a.limited(low, high);
             self.at_bound[0].insert_if(i, cut == low);
@@ -130,13 +130,10 @@ impl<T: Real> Projection<T> {
         for (level, &smoothed) in wished.levels.as_slice().iter().zip(&self.smoothed) {
             let share = smoothed * softening;
             let soft = (T::ONE + share * share) * level.filters.stiff_cubed;
-            for k in level.rows() {
-                if k < MAX_ROWS {
-                    let z = wished.spectrum.mobility[k].larger(T::ZERO);
-                    let held = z * z / (z * z * z + soft);
-                    let direction = cholesky.solve_upper(&wished.spectrum.directions[k]);
-                    tableau.stiffen(&direction, held);
-                }
+            for direction in wished.spectrum.of(level) {
+                let z = direction.mobility.larger(T::ZERO);
+                let held = z * z / (z * z * z + soft);
+                tableau.stiffen(&cholesky.solve_upper(&direction.along), held);
             }
         }
         tableau
@@ -151,11 +148,9 @@ impl<T: Real> Projection<T> {
         let levels = wished.levels.as_slice().iter();
         for (level, disturbance) in levels.zip(&mut self.disturbance) {
             let mut squared = T::ZERO;
-            for k in level.rows() {
-                if k < MAX_ROWS {
-                    let along = wished.rows.jacobian[k].dot(&difference);
-                    squared += along * along;
-                }
+            for row in wished.rows.jacobian.get(level.rows()).unwrap_or(&[]) {
+                let along = row.dot(&difference);
+                squared += along * along;
             }
             *disturbance = squared.square_root() * level.length;
         }
@@ -171,105 +166,143 @@ impl<T: Real> Default for Projection<T> {
 /// No joint.
 const NONE: usize = DOF;
 
-/// The dual active set on its way.
+/// The dual active set on its way. Joints at a bound are those that are swept into the tableau.
 struct Search<T: Real> {
-    acceleration: [T; WIDTH],
+    tableau: Tableau<T>,
+    /// a \[rad/s2\] of free joints; of those at a bound it has no meaning.
+    value: [T; WIDTH],
+    /// Multiplier \[Nm\] of joints at a bound, infinite of free ones: no step undoes it.
+    multiplier: [T; WIDTH],
     least: [T; WIDTH],
     greatest: [T; WIDTH],
-    /// Multipliers of the joints at a bound \[Nm\], 0 of the others.
-    multiplier: [T; WIDTH],
+    /// The bound that a joint is at.
+    bound: [T; WIDTH],
     /// 1 / T_jj before any sweep.
     weight: [T; WIDTH],
-    /// Whether a joint is at a bound: 1, or 0.
-    at_bound: [T; WIDTH],
-    /// The joint being pushed onto its bound, and that bound; none at first.
-    pushed: Option<(usize, T)>,
+    /// The same of joints that may be chosen, 0 of others.
+    choice: [T; WIDTH],
+    /// The joint that is being pushed, [`NONE`] before the next one is chosen.
+    pushed: usize,
+    /// Its multiplier so far.
+    so_far: T,
 }
 
 impl<T: Real> Search<T> {
     #[inline(always)]
     fn new(
-        tableau: &Tableau<T>,
+        tableau: Tableau<T>,
         acceleration: &JointVector<T>,
         bounds: &AccelerationBounds<T>,
     ) -> Self {
         let mut search = Self {
-            acceleration: [T::ZERO; WIDTH],
+            tableau,
+            value: [T::ZERO; WIDTH],
+            multiplier: [T::INFINITE; WIDTH],
             least: [T::ZERO; WIDTH],
             greatest: [T::ZERO; WIDTH],
-            multiplier: [T::ZERO; WIDTH],
+            bound: [T::ZERO; WIDTH],
             weight: [T::ZERO; WIDTH],
-            at_bound: [T::ZERO; WIDTH],
-            pushed: None,
+            choice: [T::ZERO; WIDTH],
+            pushed: NONE,
+            so_far: T::ZERO,
         };
         for i in 0..DOF {
-            search.acceleration[i] = acceleration[i];
+            let weight = T::ONE / search.tableau.diagonal(i);
+            search.value[i] = acceleration[i];
             search.least[i] = bounds.least[i];
             search.greatest[i] = bounds.greatest[i];
-            search.weight[i] = T::ONE / tableau.diagonal(i);
+            search.weight[i] = weight;
+            search.choice[i] = weight;
         }
         search
     }
 
-    /// One exchange: a joint onto its bound, or on the way there another one off its own.
-    /// False where no bound is violated any more. Without branches: each costs the same.
+    /// a of a joint.
     #[inline(always)]
-    fn exchange(&mut self, tableau: &mut Tableau<T>) -> bool {
-        let worst = self.worst(tableau);
-        let Some((pushed, bound)) = self.pushed.or(worst) else {
-            return false;
-        };
-        let row = tableau.row(pushed);
-        let mut step = (self.acceleration[pushed % WIDTH] - bound) / row[pushed % WIDTH];
-        let mut dropped = NONE;
-        for joint in 0..DOF {
-            // Joints that are not at a bound have no multiplier.
-            let (multiplier, slope) = (self.multiplier[joint], row[joint]);
-            let reached = multiplier / slope;
-            let first =
-                (multiplier * slope * step > T::ZERO) & (reached.magnitude() < step.magnitude());
-            step = if first { reached } else { step };
-            dropped = if first { joint } else { dropped };
-        }
-        for joint in 0..DOF {
-            let change = row[joint] * step;
-            let held = self.at_bound[joint];
-            self.multiplier[joint] -= held * change;
-            self.acceleration[joint] -= (T::ONE - held) * change;
-        }
-        self.multiplier[pushed % WIDTH] += step;
-        let arrives = dropped == NONE;
-        let (exchanged, held) = if arrives {
-            (pushed, T::ONE)
+    fn acceleration(&self, joint: usize) -> T {
+        if self.multiplier[joint].finite() {
+            self.bound[joint]
         } else {
-            (dropped, T::ZERO)
-        };
-        tableau.sweep(exchanged, held + held - T::ONE);
-        self.at_bound[exchanged % WIDTH] = held;
-        self.multiplier[exchanged % WIDTH] *= held;
-        let place = &mut self.acceleration[pushed % WIDTH];
-        *place = if arrives { bound } else { *place };
-        self.pushed = if arrives { None } else { Some((pushed, bound)) };
+            self.value[joint]
+        }
+    }
+
+    /// One exchange: a joint onto its bound, or on the way there another one off its own.
+    /// False where no bound is violated any more.
+    #[inline(always)]
+    fn exchange(&mut self) -> bool {
+        let worst = self.worst();
+        if self.pushed == NONE {
+            if worst == NONE {
+                return false;
+            }
+            let joint = worst % WIDTH;
+            self.pushed = joint;
+            self.so_far = T::ZERO;
+            self.bound[joint] = self.value[joint].limited(self.least[joint], self.greatest[joint]);
+        }
+        let joint = self.pushed % WIDTH;
+        let row = self.tableau.row(joint);
+        let pivot = row[joint];
+        if pivot * self.weight[joint] <= T::PIVOT_SHARE {
+            // Nothing gives way to it any more: the cut in the end keeps its bound.
+            self.choice[joint] = T::ZERO;
+            self.pushed = NONE;
+            return true;
+        }
+        let violation = self.value[joint] - self.bound[joint];
+        let (step, dropped) = self.advance(violation / pivot, &row);
+        self.so_far += step;
+        if dropped == NONE {
+            self.multiplier[joint] = self.so_far;
+            self.choice[joint] = T::ZERO;
+            self.pushed = NONE;
+            self.tableau.sweep(joint, &row, T::ONE);
+        } else {
+            let dropped = dropped % WIDTH;
+            self.value[dropped] = self.bound[dropped];
+            self.multiplier[dropped] = T::INFINITE;
+            self.choice[dropped] = self.weight[dropped];
+            let row = self.tableau.row(dropped);
+            self.tableau.sweep(dropped, &row, -T::ONE);
+        }
         true
     }
 
-    /// The joint whose bound is violated worst, by the cost of pushing it there, and the bound.
+    /// Moves the multiplier of the pushed joint by `step`, or until the first joint leaves its
+    /// bound; returns how far, and that joint.
     #[inline(always)]
-    fn worst(&self, tableau: &Tableau<T>) -> Option<(usize, T)> {
-        let least_share = T::PIVOT_SHARE;
-        let mut worst = None;
-        let mut most = T::ZERO;
-        for joint in 0..DOF {
-            let acceleration = self.acceleration[joint];
-            let bound = acceleration.limited(self.least[joint], self.greatest[joint]);
-            let violation = acceleration - bound;
-            let weight = self.weight[joint];
-            let cost = violation * violation * weight;
-            let free = self.at_bound[joint] == T::ZERO;
-            let gives = tableau.diagonal(joint) * weight > least_share;
-            if free & gives & (cost > most) {
-                most = cost;
-                worst = Some((joint, bound));
+    fn advance(&mut self, step: T, row: &[T; WIDTH]) -> (T, usize) {
+        let mut change = [T::ZERO; WIDTH];
+        // Above 1 a multiplier changes its sign on the way.
+        let (mut most, mut dropped) = (T::ONE, NONE);
+        for i in 0..DOF {
+            change[i] = row[i] * step;
+            let way = change[i] / self.multiplier[i];
+            if way > most {
+                (most, dropped) = (way, i);
+            }
+        }
+        let share = T::ONE / most;
+        for i in 0..DOF {
+            let change = change[i] * share;
+            self.multiplier[i] -= change;
+            self.value[i] -= change;
+        }
+        (step * share, dropped)
+    }
+
+    /// The joint whose bound is violated worst, by the cost of pushing it there.
+    #[inline(always)]
+    fn worst(&self) -> usize {
+        let (mut worst, mut most) = (NONE, T::ZERO);
+        for i in 0..DOF {
+            let value = self.value[i];
+            let above = (value - self.greatest[i]).larger(self.least[i] - value);
+            let violation = above.larger(T::ZERO);
+            let cost = violation * violation * self.choice[i];
+            if cost > most {
+                (most, worst) = (cost, i);
             }
         }
         worst

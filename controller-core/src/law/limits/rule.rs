@@ -62,24 +62,27 @@ pub fn joint_limits<T: Real>(
 }
 
 fn by_rule(parameters: &ArmParameters, inertias: &[f64; DOF]) -> JointLimits {
-    let gain = |i: usize| {
-        let link = &parameters.links[i];
-        let friction = match link.friction.coulomb > 0.0 {
-            true => link.friction.coulomb,
-            false => FRICTION_SHARE * link.torque_limit,
-        };
-        (1.5 * friction / inertias[i]).max(SPEED_GAIN_MIN)
-    };
-    let speed = |i: usize| parameters.links[i].speed_limit;
-    let strong = |i: usize| 0.5 * parameters.links[i].torque_limit / inertias[i];
-    JointLimits {
-        acceleration: core::array::from_fn(|i| (0.42 * gain(i) * speed(i)).min(strong(i))),
-        braking: core::array::from_fn(|i| 4.4 * speed(i)),
-        speed_gain: core::array::from_fn(gain),
+    let mut limits = JointLimits {
+        acceleration: [0.0; DOF],
+        braking: [0.0; DOF],
+        speed_gain: [0.0; DOF],
         position_gain: POSITION_GAIN,
         margin: MARGIN,
         speed_share: SPEED_SHARE,
+    };
+    for (i, (link, &inertia)) in parameters.links.iter().zip(inertias).enumerate() {
+        let friction = if link.friction.coulomb > 0.0 {
+            link.friction.coulomb
+        } else {
+            FRICTION_SHARE * link.torque_limit
+        };
+        let gain = (1.5 * friction / inertia).max(SPEED_GAIN_MIN);
+        let strong = 0.5 * link.torque_limit / inertia;
+        limits.speed_gain[i] = gain;
+        limits.acceleration[i] = (0.42 * gain * link.speed_limit).min(strong);
+        limits.braking[i] = 4.4 * link.speed_limit;
     }
+    limits
 }
 
 /// Places of each joint that are looked at, and rounds over the joints.

@@ -13,31 +13,62 @@
 
 use super::eigen::Eigen;
 use crate::fault::IndexSet;
-use crate::joint::{JointVector, zeros};
+use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::Cholesky;
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 use crate::task::set::{Level, Levels};
 
-/// Directions of all levels, as many per level as it has rows. Behind the last one the arrays
-/// have no meaning.
+/// A direction of a level, and the row of the level in the same place.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction<T: Real> {
+    /// The row of A, J L^-T.
+    pub row: JointVector<T>,
+    /// y: the direction, of what the levels above leave.
+    pub along: JointVector<T>,
+    /// Its column of E: the direction in the rows of the level.
+    pub column: [T; 3],
+    /// z \[1/kg\], of an orientation \[1/(kg m2)\].
+    pub mobility: T,
+    /// d: 1/z, or less where the level is degraded.
+    pub drive: T,
+    /// p: 1/z, or less where the level is released.
+    pub keep: T,
+}
+
+impl<T: Real> Direction<T> {
+    const NONE: Self = Self {
+        row: zeros(),
+        along: zeros(),
+        column: [T::ZERO; 3],
+        mobility: T::ZERO,
+        drive: T::ZERO,
+        keep: T::ZERO,
+    };
+
+    /// The part of numbers per row of the level along the direction.
+    #[inline(always)]
+    pub fn part(&self, rows: &[T; 3]) -> T {
+        let ([a, b, c], [x, y, z]) = (&self.column, rows);
+        *a * *x + *b * *y + *c * *z
+    }
+
+    /// Adds `part` along the direction to numbers per row of the level.
+    #[inline(always)]
+    pub fn add_part(&self, part: T, rows: &mut [T; 3]) {
+        for (row, &entry) in rows.iter_mut().zip(&self.column) {
+            *row += entry * part;
+        }
+    }
+}
+
+/// Directions of all levels, as many per level as it has rows. Behind the last one they have
+/// no meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Spectrum<T: Real> {
     count: usize,
-    /// A: rows of J L^-T, those of orientations times [`ORIENTATION_LENGTH`]
-    /// (crate::ranges::ORIENTATION_LENGTH).
-    pub rows: [JointVector<T>; MAX_ROWS],
-    /// y: what of them is left to the level, along its directions.
-    pub directions: [JointVector<T>; MAX_ROWS],
-    /// z \[1/kg\] per direction.
-    pub mobility: [T; MAX_ROWS],
-    /// d \[kg\]: 1/z, or less than it where the level is degraded.
-    pub drive: [T; MAX_ROWS],
-    /// p \[kg\]: 1/z, or less than it where the level is released.
-    pub keep: [T; MAX_ROWS],
-    /// E by rows of the level.
-    pub vectors: [[T; 3]; MAX_ROWS],
+    directions: [Direction<T>; MAX_ROWS],
     /// rho: the square of how far the most released direction is below its threshold, 0 to 1.
     pub release: T,
     /// Levels with a direction that is driven by less than 1/z.
@@ -52,12 +83,7 @@ impl<T: Real> Spectrum<T> {
     pub const fn new() -> Self {
         Self {
             count: 0,
-            rows: [zeros(); MAX_ROWS],
-            directions: [zeros(); MAX_ROWS],
-            mobility: [T::ZERO; MAX_ROWS],
-            drive: [T::ZERO; MAX_ROWS],
-            keep: [T::ZERO; MAX_ROWS],
-            vectors: [[T::ZERO; 3]; MAX_ROWS],
+            directions: [Direction::NONE; MAX_ROWS],
             release: T::ZERO,
             degraded: IndexSet::NONE,
             released: IndexSet::NONE,
@@ -72,94 +98,121 @@ impl<T: Real> Spectrum<T> {
         rows: &TaskRows<T>,
         cholesky: &Cholesky<T>,
     ) {
-        self.count = 0;
+        self.count = rows.count();
         self.release = T::ZERO;
         (self.degraded, self.released) = (IndexSet::NONE, IndexSet::NONE);
+        let placed = self.directions.iter_mut().zip(&rows.jacobian);
+        for (direction, row) in placed.take(self.count) {
+            direction.row = cholesky.solve_lower(row);
+        }
         for (number, level) in levels.as_slice().iter().enumerate() {
-            self.add(number, level, rows, cholesky);
+            self.split(number, level);
         }
     }
 
+    /// The directions of a level, those of the levels above it known.
     #[inline(always)]
-    fn add(&mut self, number: usize, level: &Level<T>, rows: &TaskRows<T>, cholesky: &Cholesky<T>) {
-        let Level { start, size, .. } = *level;
+    fn split(&mut self, number: usize, level: &Level<T>) {
+        let Some((above, from)) = self.directions.split_at_mut_checked(level.start) else {
+            return;
+        };
+        let Some(own) = from.get_mut(..level.size) else {
+            return;
+        };
         let mut left: [JointVector<T>; 3] = [zeros(); 3];
-        for k in 0..size {
-            if start + k < MAX_ROWS {
-                let row = cholesky.solve_lower(&(rows.jacobian[start + k] * level.length));
-                self.rows[start + k] = row;
-                left[k] = self.left_by(start, &row);
-            }
+        for (left, direction) in left.iter_mut().zip(&*own) {
+            *left = left_by(above, &direction.row);
         }
-        // Symmetric but for rounding, and where a level above is released.
-        let product = |a: usize, b: usize| match self.rows.get(start + b) {
-            Some(row) => left[a].dot(row),
-            None => T::ZERO,
-        };
-        let gram = |a: usize, b: usize| match start {
-            0 => product(a, b),
-            _ => (product(a, b) + product(b, a)) * T::HALF,
-        };
-        let (mut diagonal, mut off) = ([T::ZERO; 3], [T::ZERO; 3]);
-        for k in 0..size {
-            diagonal[k] = product(k, k);
-        }
-        if size > 1 {
-            off[2] = gram(0, 1);
-        }
-        if size > 2 {
-            off[1] = gram(0, 2);
-            off[0] = gram(1, 2);
-        }
-        let eigen = Eigen::new(diagonal, off, size);
+        let eigen = Eigen::new(&gram(&left, own, number == 0), level.size);
         let filters = &level.filters;
-        for k in 0..size {
-            let place = start + k;
-            if place < MAX_ROWS {
-                let mut direction = left[0] * eigen.vectors[0][k];
-                for row in 1..size {
-                    direction += left[row] * eigen.vectors[row][k];
+        for (k, direction) in own.iter_mut().enumerate().take(3) {
+            let column = eigen.column(k);
+            let mut along = left[0] * column[0];
+            for (left, &share) in left.iter().zip(&column).take(level.size).skip(1) {
+                for i in 0..DOF {
+                    along[i] += left[i] * share;
                 }
-                let z = eigen.values[k];
-                self.directions[place] = direction;
-                self.mobility[place] = z;
-                self.drive[place] = filters.drive.of(z);
-                self.keep[place] = filters.keep.of(z);
-                self.vectors[place] = eigen.vectors[k];
-                self.degraded.insert_if(number, z < filters.drive.threshold);
-                self.released.insert_if(number, z < filters.keep.threshold);
-                let below = (T::ONE - z * filters.keep.inverse).larger(T::ZERO);
-                self.release = self.release.larger(below * below);
-                self.count = place + 1;
             }
+            direction.along = along;
+            let z = eigen.values[k];
+            direction.column = column;
+            direction.mobility = z;
+            direction.drive = filters.drive.of(z);
+            direction.keep = filters.keep.of(z);
+            self.degraded.insert_if(number, z < filters.drive.threshold);
+            self.released.insert_if(number, z < filters.keep.threshold);
+            let below = (T::ONE - z * filters.keep.inverse).larger(T::ZERO);
+            self.release = self.release.larger(below * below);
         }
     }
 
-    /// Number of directions: of task rows.
+    /// All directions, level by level.
     #[must_use]
     #[inline(always)]
-    pub fn count(&self) -> usize {
-        self.count.min(MAX_ROWS)
+    pub fn directions(&self) -> &[Direction<T>] {
+        self.directions.get(..self.count).unwrap_or(&[])
     }
 
-    /// x less what the first `count` directions keep of it: 1 - sum of p y y^T, applied.
-    #[must_use]
+    /// Those of the levels above a level.
     #[inline(always)]
-    pub fn left_by(&self, count: usize, x: &JointVector<T>) -> JointVector<T> {
-        let mut left = *x;
-        let directions = self.directions.iter().zip(&self.keep);
-        for (direction, &keep) in directions.take(count) {
-            left -= direction * (keep * direction.dot(x));
-        }
-        left
+    pub(super) fn above(&self, level: &Level<T>) -> &[Direction<T>] {
+        self.directions.get(..level.start).unwrap_or(&[])
+    }
+
+    /// Those of a level: at most three.
+    #[inline(always)]
+    pub(super) fn of(&self, level: &Level<T>) -> &[Direction<T>] {
+        self.directions.get(level.rows()).unwrap_or(&[])
     }
 
     /// x less what all directions keep of it: the null-space part of a whitened vector.
     #[must_use]
     #[inline]
     pub fn null_part(&self, x: &JointVector<T>) -> JointVector<T> {
-        self.left_by(self.count(), x)
+        left_by(self.directions(), x)
     }
+}
+
+/// x less what directions keep of it: 1 - sum of p y y^T, applied.
+#[inline(always)]
+pub(super) fn left_by<T: Real>(directions: &[Direction<T>], x: &JointVector<T>) -> JointVector<T> {
+    let mut left = *x;
+    for direction in directions {
+        let kept = direction.keep * direction.along.dot(x);
+        for i in 0..DOF {
+            left[i] -= direction.along[i] * kept;
+        }
+    }
+    left
+}
+
+/// S by its diagonal, and by its entries off it, each at the place of the row that it has not to
+/// do with. Symmetric but for rounding, and where a level above is released.
+#[inline(always)]
+fn gram<T: Real>(left: &[JointVector<T>; 3], own: &[Direction<T>], first: bool) -> [[T; 3]; 2] {
+    let product = |a: usize, b: usize| match own.get(b) {
+        Some(direction) => left[a].dot(&direction.row),
+        None => T::ZERO,
+    };
+    let mean = |a: usize, b: usize| {
+        if first {
+            product(a, b)
+        } else {
+            (product(a, b) + product(b, a)) * T::HALF
+        }
+    };
+    let (mut diagonal, mut off) = ([T::ZERO; 3], [T::ZERO; 3]);
+    for k in 0..3 {
+        diagonal[k] = product(k, k);
+    }
+    if own.len() > 1 {
+        off[2] = mean(0, 1);
+    }
+    if own.len() > 2 {
+        off[1] = mean(0, 2);
+        off[0] = mean(1, 2);
+    }
+    [diagonal, off]
 }
 
 impl<T: Real> Default for Spectrum<T> {

@@ -17,7 +17,7 @@ const PLACE: [[u8; WIDTH]; WIDTH] = {
     while n < WIDTH * WIDTH {
         let (i, j) = (n / WIDTH, n % WIDTH);
         let (low, high) = if i < j { (i, j) } else { (j, i) };
-        place[i][j] = (high * (high + 1) / 2 + low) as u8;
+        place[i][j] = ((high * (high + 1) / 2 + low) % ENTRIES) as u8;
         n += 1;
     }
     place
@@ -33,19 +33,17 @@ impl<T: Real> Tableau<T> {
     /// W^T W of a lower triangular W.
     #[inline(always)]
     pub fn inverse(factor: &JointMatrix<T>) -> Self {
-        let mut tableau = Self {
-            entries: [T::ZERO; ENTRIES],
-        };
+        let mut entries = [T::ZERO; ENTRIES];
         for i in 0..DOF {
             for j in 0..=i {
                 let mut sum = T::ZERO;
                 for k in i..DOF {
                     sum += factor[(k, i)] * factor[(k, j)];
                 }
-                tableau.entries[i * (i + 1) / 2 + j] = sum;
+                entries[i * (i + 1) / 2 + j] = sum;
             }
         }
-        tableau
+        Self { entries }
     }
 
     /// Less `held` x x^T.
@@ -76,11 +74,10 @@ impl<T: Real> Tableau<T> {
         row
     }
 
-    /// Sweeps variable `k` in (`sign` 1) or out (-1): what is left is the matrix of the others
-    /// with it held, its own row what its multiplier does to them.
+    /// Sweeps variable `k`, whose row this is, in (`sign` 1) or out (-1): what is left is the
+    /// matrix of the others with it held, its own row what its multiplier does to them.
     #[inline(always)]
-    pub fn sweep(&mut self, k: usize, sign: T) {
-        let row = self.row(k);
+    pub fn sweep(&mut self, k: usize, row: &[T; WIDTH], sign: T) {
         let inverse = T::ONE / row[k % WIDTH];
         for i in 0..DOF {
             let scaled = row[i] * inverse;

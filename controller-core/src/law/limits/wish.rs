@@ -13,9 +13,8 @@
 //! gets lost fades last.
 
 use super::bounds::JointBounds;
-use super::eigen::Eigen;
 use super::motion::WhitenedMotion;
-use super::spectrum::Spectrum;
+use super::spectrum::{Spectrum, left_by};
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
@@ -66,12 +65,57 @@ pub(crate) struct Ask<'a, T: Real> {
 struct Sum<T: Real> {
     /// u: what they ask for, whitened.
     whitened: JointVector<T>,
-    /// L^-T of it \[rad/s2\].
+    /// L^-T u \[rad/s2\].
     acceleration: JointVector<T>,
     /// ur: L^-1 r, less what the levels so far have compensated.
     residual: JointVector<T>,
     /// C dq + g - r \[Nm\].
     bias: JointVector<T>,
+}
+
+impl<T: Real> Sum<T> {
+    /// u + ur.
+    #[inline(always)]
+    fn known(&self) -> JointVector<T> {
+        self.whitened + self.residual
+    }
+
+    /// Adds a share of a stage.
+    #[inline(always)]
+    fn add(&mut self, stage: &Stage<T>, share: T) {
+        for i in 0..DOF {
+            self.whitened[i] += stage.whitened[i] * share;
+            self.acceleration[i] += stage.acceleration[i] * share;
+        }
+    }
+}
+
+/// What one stage asks for.
+struct Stage<T: Real> {
+    whitened: JointVector<T>,
+    /// L^-T of it \[rad/s2\].
+    acceleration: JointVector<T>,
+}
+
+impl<T: Real> Stage<T> {
+    #[inline(always)]
+    fn new(cholesky: &Cholesky<T>, whitened: JointVector<T>) -> Self {
+        Self {
+            acceleration: cholesky.solve_upper(&whitened),
+            whitened,
+        }
+    }
+
+    /// Share, at most 1, with which no joint is asked for more than alpha.
+    #[inline(always)]
+    fn moderate_share(&self, bounds: &JointBounds<T>) -> T {
+        let mut most = T::ONE;
+        for i in 0..DOF {
+            let of_joint = (self.acceleration[i] * bounds.inverse_acceleration[i]).magnitude();
+            most = if of_joint > most { of_joint } else { most };
+        }
+        T::ONE / most
+    }
 }
 
 impl<T: Real> Wish<T> {
@@ -103,154 +147,133 @@ impl<T: Real> Wish<T> {
         (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
         // What the rows of each level get by the stages down to their own.
         let mut own = [T::ZERO; MAX_ROWS];
-        for (number, level) in ask.levels.as_slice().iter().enumerate() {
-            let command = self.command(ask, number, level, &mut sum);
-            let share = self.add(ask, &command, number > 0, &mut sum);
-            self.scaled.insert_if(number, share < T::ONE);
-            if let Some(of_level) = self.level_share.get_mut(number) {
-                *of_level = share;
+        let levels = ask.levels.as_slice().iter();
+        for (number, (level, of_level)) in levels.zip(&mut self.level_share).enumerate() {
+            let (command, shaped) = command(ask, number, level, &mut sum);
+            let stage = Stage::new(cholesky, command);
+            let mut share = stage.moderate_share(ask.bounds);
+            if number > 0 {
+                let before = sum.bias + cholesky.lower_times(&sum.known());
+                let torque = cholesky.lower_times(&stage.whitened);
+                share *= torque_share(&before, &torque, share, ask.torque_limit);
             }
-            let total = sum.whitened + sum.residual;
-            for k in level.rows() {
-                if k < MAX_ROWS {
-                    own[k] = spectrum.rows[k].dot(&total);
+            sum.add(&stage, share);
+            *of_level = share;
+            self.shaped.insert_if(number, shaped);
+            self.scaled.insert_if(number, share < T::ONE);
+            let known = sum.known();
+            if let Some(own) = own.get_mut(level.rows()) {
+                for (own, direction) in own.iter_mut().zip(spectrum.of(level)) {
+                    *own = direction.row.dot(&known);
                 }
             }
         }
-        let force = cholesky.solve_lower(ask.null_force);
-        let damping = T::from_f64(RELEASE_DAMPING) * spectrum.release;
-        let command = spectrum.null_part(&(force - ask.motion.null * damping)) + sum.residual;
-        sum.residual = zeros();
-        self.null_share = self.add(ask, &command, true, &mut sum);
-        self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
+        self.add_null_space(ask, &mut sum);
         self.acceleration = sum.acceleration;
         self.set_leaks(ask, &own, &sum.whitened);
     }
 
-    /// u_i; takes off the residual what the level compensates.
+    /// The null space; makes the torque of all stages.
     #[inline(always)]
-    fn command(
-        &mut self,
-        ask: &Ask<'_, T>,
-        number: usize,
-        level: &Level<T>,
-        sum: &mut Sum<T>,
-    ) -> JointVector<T> {
-        let (rows, spectrum) = (ask.rows, ask.spectrum);
-        let before = sum.residual;
-        let mut vectors = [[T::ZERO; 3]; 3];
-        let mut along = [T::ZERO; 3];
-        for k in 0..level.size {
-            let place = level.start + k;
-            if place < MAX_ROWS {
-                let direction = &spectrum.directions[place];
-                sum.residual -= direction * (spectrum.keep[place] * direction.dot(&before));
-                vectors[k] = spectrum.vectors[place];
-                along[k] = ask.motion.along[place];
-            }
-        }
-        let known = sum.whitened + sum.residual;
-        let mut wanted = [T::ZERO; 3];
-        for k in 0..level.size {
-            let place = level.start + k;
-            if place < MAX_ROWS {
-                let commanded = rows.commanded[place] - rows.bias[place];
-                wanted[k] = commanded * level.length - spectrum.rows[place].dot(&known);
-            }
-        }
-        let damped = level.damping_of_rows(&Eigen::times(&vectors, &along));
-        let own = Eigen::transposed_times(&vectors, &damped);
-        let wanted = Eigen::transposed_times(&vectors, &wanted);
-        let mut shaped = rows.shortened.contains(number);
-        let mut command: JointVector<T> = zeros();
-        for k in 0..level.size {
-            let place = level.start + k;
-            if place < MAX_ROWS {
-                let asked = wanted[k] + own[k];
-                let most = level.filters.most_command(spectrum.mobility[place]);
-                let cut = asked.limited(-most, most);
-                shaped |= cut != asked;
-                let force = spectrum.drive[place] * cut - spectrum.keep[place] * own[k];
-                command += spectrum.directions[place] * force;
-            }
-        }
-        self.shaped.insert_if(number, shaped);
-        if number > 0 {
-            // Once more: of a direction that a level above has released, the share that it has
-            // been given back twice.
-            command = spectrum.left_by(level.start, &command);
-        }
-        command
-    }
-
-    /// Adds a stage, scaled to what the joints can do, one below the first level also to the
-    /// torque that is left; and returns its share. `self.torque` becomes the torque of all
-    /// stages so far.
-    #[inline(always)]
-    fn add(
-        &mut self,
-        ask: &Ask<'_, T>,
-        command: &JointVector<T>,
-        gives_way: bool,
-        sum: &mut Sum<T>,
-    ) -> T {
+    fn add_null_space(&mut self, ask: &Ask<'_, T>, sum: &mut Sum<T>) {
         let cholesky = &ask.dynamics.cholesky;
-        let acceleration = cholesky.solve_upper(command);
-        let mut most = T::ONE;
+        let mut force = cholesky.solve_lower(ask.null_force);
+        let damping = T::from_f64(RELEASE_DAMPING) * ask.spectrum.release;
         for i in 0..DOF {
-            most = (acceleration[i] * ask.bounds.inverse_acceleration[i])
-                .magnitude()
-                .larger(most);
+            force[i] -= ask.motion.null[i] * damping;
         }
-        let mut share = T::ONE / most;
-        if gives_way {
-            let before = torque_before(cholesky, sum);
-            let torque = cholesky.lower_times(command) * share;
-            let room = room(&before, &torque, ask.torque_limit);
-            self.torque = before + torque * room;
-            share *= room;
-        }
-        sum.whitened += command * share;
-        sum.acceleration += acceleration * share;
-        share
+        let command = ask.spectrum.null_part(&force) + sum.residual;
+        let stage = Stage::new(cholesky, command);
+        let moderate = stage.moderate_share(ask.bounds);
+        let before = sum.bias + cholesky.lower_times(&sum.whitened);
+        let torque = cholesky.lower_times(&stage.whitened);
+        let share = moderate * torque_share(&before, &torque, moderate, ask.torque_limit);
+        sum.add(&stage, share);
+        self.torque = before + torque * share;
+        self.null_share = share;
+        self.scaled.insert_if(MAX_LEVELS, share < T::ONE);
     }
 
     /// What the levels got beyond `own`.
     #[inline(always)]
     fn set_leaks(&mut self, ask: &Ask<'_, T>, own: &[T; MAX_ROWS], whitened: &JointVector<T>) {
-        for (number, level) in ask.levels.as_slice().iter().enumerate() {
+        let levels = ask.levels.as_slice().iter();
+        for (level, leak) in levels.zip(&mut self.leak) {
             let mut squared = T::ZERO;
-            for k in level.rows() {
-                if k < MAX_ROWS {
-                    let below = ask.spectrum.rows[k].dot(whitened) - own[k];
-                    squared += below * below;
-                }
+            let own = own.get(level.rows()).unwrap_or(&[]);
+            for (direction, own) in ask.spectrum.of(level).iter().zip(own) {
+                let below = direction.row.dot(whitened) - *own;
+                squared += below * below;
             }
-            if let Some(leak) = self.leak.get_mut(number) {
-                *leak = squared.square_root();
-            }
+            *leak = squared.square_root() * level.length;
         }
     }
 }
 
-/// C dq + g - r + L (u + ur) \[Nm\].
+/// u_i, and whether it was shortened; takes off the residual what the level compensates.
 #[inline(always)]
-fn torque_before<T: Real>(cholesky: &Cholesky<T>, sum: &Sum<T>) -> JointVector<T> {
-    sum.bias + cholesky.lower_times(&(sum.whitened + sum.residual))
+fn command<T: Real>(
+    ask: &Ask<'_, T>,
+    number: usize,
+    level: &Level<T>,
+    sum: &mut Sum<T>,
+) -> (JointVector<T>, bool) {
+    let (rows, spectrum) = (ask.rows, ask.spectrum);
+    let directions = spectrum.of(level);
+    sum.residual = left_by(directions, &sum.residual);
+    let known = sum.known();
+    let along = ask.motion.along.get(level.rows()).unwrap_or(&[]);
+    let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
+    let bias = rows.bias.get(level.rows()).unwrap_or(&[]);
+    let (mut wanted, mut speed) = ([T::ZERO; 3], [T::ZERO; 3]);
+    for (k, direction) in directions.iter().enumerate().take(3) {
+        if let (Some(along), Some(commanded), Some(bias)) =
+            (along.get(k), commanded.get(k), bias.get(k))
+        {
+            wanted[k] = *commanded - *bias - direction.row.dot(&known);
+            direction.add_part(*along, &mut speed);
+        }
+    }
+    let damped = level.damping_of_rows(&speed);
+    let mut shaped = rows.shortened.contains(number);
+    let mut command: JointVector<T> = zeros();
+    for direction in directions {
+        let own = direction.part(&damped);
+        let asked = direction.part(&wanted) + own;
+        let most = level.filters.most_command(direction.mobility);
+        let cut = asked.limited(-most, most);
+        shaped |= cut != asked;
+        let force = direction.drive * cut - direction.keep * own;
+        for i in 0..DOF {
+            command[i] += direction.along[i] * force;
+        }
+    }
+    if number > 0 {
+        // Once more: of a direction that a level above has released, the share that it has
+        // been given back twice.
+        command = left_by(spectrum.above(level), &command);
+    }
+    (command, shaped)
 }
 
-/// Largest share, at most 1, of `torque` \[Nm\] that goes on top of `before` within `limit`.
+/// Largest share, at most 1, of a torque of `share` times `torque` \[Nm\] that goes on top of
+/// `before` within `limit`.
 #[inline(always)]
-fn room<T: Real>(before: &JointVector<T>, torque: &JointVector<T>, limit: &JointVector<T>) -> T {
+fn torque_share<T: Real>(
+    before: &JointVector<T>,
+    torque: &JointVector<T>,
+    share: T,
+    limit: &JointVector<T>,
+) -> T {
     let least = T::from_f64(1e-9);
-    let mut share = T::ONE;
+    let mut room = T::ONE;
     for i in 0..DOF {
-        let size = torque[i].magnitude().larger(least);
-        let towards = T::ONE.with_sign_of(torque[i]) * before[i];
-        let room = (limit[i] - towards).larger(T::ZERO);
-        share = share.limited(T::ZERO, room / size);
+        let asked = torque[i] * share;
+        let towards = T::ONE.with_sign_of(asked) * before[i];
+        let of_joint = (limit[i] - towards).larger(T::ZERO) / asked.magnitude().larger(least);
+        room = if of_joint < room { of_joint } else { room };
     }
-    share
+    room
 }
 
 impl<T: Real> Default for Wish<T> {
