@@ -11,7 +11,7 @@ use controller_core::{Controller, ControllerConfig, Measurement};
 use crate::after_fault::{Acting, Ending};
 use crate::arm_points::origins;
 use crate::contact::Contacts;
-use crate::controllers::ControllerKind;
+use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::interrupt;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
@@ -54,7 +54,12 @@ impl Experiment {
     /// A configuration that the core refuses, for example a damping that is too
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
-        Controller::new(self.scenario.arm(), &self.controller_config()?)
+        let make = match self.controller {
+            ControllerKind::Torque(TorqueLaw::Hierarchical) => Controller::new,
+            // The others take the place of the exact law.
+            _ => Controller::exact,
+        };
+        make(self.scenario.arm(), &self.controller_config()?)
             .map_err(|error| Invalid::line(error).within(&self.scenario.name))
     }
 
@@ -192,6 +197,9 @@ impl Experiment {
                 levels.iter_mut().zip(probes.0.iter().zip(lower))
             {
                 level.leak = probe.leak(plant.model(), &truth, torque, below);
+            }
+            for (level, &leak) in levels.iter_mut().zip(&decision.view.leak) {
+                level.leak = leak;
             }
             let sample = Sample {
                 t_s,

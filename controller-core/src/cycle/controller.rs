@@ -110,6 +110,12 @@ impl<T: Real> Controller<T> {
         &self.arm
     }
 
+    /// Whether its law is the one within limits.
+    #[must_use]
+    pub fn has_limits(&self) -> bool {
+        self.law.limits
+    }
+
     /// Number of levels: so many targets a [`Reference`](crate::Reference) needs.
     #[must_use]
     pub fn level_count(&self) -> usize {

@@ -35,11 +35,24 @@ pub(super) struct Decision {
 #[derive(Default)]
 pub(super) struct PriorityView {
     pub conditioning: Vec<f64>,
-    /// Torque asked for below each level \[Nm\].
+    /// Torque asked for below each level \[Nm\]; empty where it is not known.
     pub below: Vec<JointVector<f64>>,
+    /// Acceleration of each level by what stands below it, as the controller sees it; empty
+    /// where it does not look.
+    pub leak: Vec<f64>,
 }
 
 impl PriorityView {
+    /// Of the law within limits.
+    fn within_limits(data: &Data<f64>) -> Self {
+        let mobility = data.spectrum.directions().iter().map(|d| d.mobility);
+        Self {
+            conditioning: mobility.map(|z| z.max(0.0).sqrt()).collect(),
+            leak: data.wish.leak.to_vec(),
+            below: Vec::new(),
+        }
+    }
+
     fn new(data: &Data<f64>, demand: &SplitDemand) -> Self {
         let hierarchy = &data.hierarchy;
         Self {
@@ -47,6 +60,7 @@ impl PriorityView {
             below: (0..hierarchy.levels())
                 .map(|level| demand.below(&data.dynamics, level))
                 .collect(),
+            leak: Vec::new(),
         }
     }
 }
@@ -108,13 +122,18 @@ impl<'a> TorqueDriver<'a> {
     fn decide(&mut self, measurement: &Measurement<f64>, reference: &Reference<f64>) -> Decision {
         let mut view = PriorityView::default();
         let (law, gains, state) = (self.law, &self.gains, &mut self.state);
-        let step = self
-            .controller
-            .step_with(state, measurement, reference, |_, _, data| {
-                let demand = law.decide(data, gains);
-                view = PriorityView::new(data, &demand);
-                data.demand = demand.demand(&data.dynamics);
-            });
+        let step = if self.controller.has_limits() {
+            let step = self.controller.step(state, measurement, reference);
+            view = PriorityView::within_limits(state.data());
+            step
+        } else {
+            self.controller
+                .step_with(state, measurement, reference, |_, _, data| {
+                    let demand = law.decide(data, gains);
+                    view = PriorityView::new(data, &demand);
+                    data.demand = demand.demand(&data.dynamics);
+                })
+        };
         Decision {
             fault: step.status.fault,
             mode: step.status.mode,
