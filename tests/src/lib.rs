@@ -19,12 +19,21 @@ pub fn lwr() -> ArmModel<f64> {
     ArmModel::new(&LWR_IV).expect("the built-in arm is valid")
 }
 
-/// A controller of the arm under test, in either precision.
+/// A controller of the arm under test with the exact law, in either precision.
 ///
 /// # Panics
 /// A configuration that is refused.
 #[must_use]
 pub fn controller<T: Real>(config: &ControllerConfig) -> Controller<T> {
+    Controller::exact(&LWR_IV, config).expect("a valid configuration")
+}
+
+/// The same with the law within limits.
+///
+/// # Panics
+/// A configuration that is refused.
+#[must_use]
+pub fn limited_controller<T: Real>(config: &ControllerConfig) -> Controller<T> {
     Controller::new(&LWR_IV, config).expect("a valid configuration")
 }
 

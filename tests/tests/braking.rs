@@ -193,7 +193,7 @@ fn flipping(rate_limit: f64, cycles: i32) -> (u32, f64) {
     for link in &mut arm.links {
         link.torque_rate_limit = rate_limit;
     }
-    let controller = Controller::<f64>::new(&arm, &two_level()).expect("valid");
+    let controller = Controller::<f64>::exact(&arm, &two_level()).expect("valid");
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, POSTURE.into(), CYCLE_S, 1);
     let mut state = State::new();
     let rest = controller.rest_reference(&POSTURE.into());

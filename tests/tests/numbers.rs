@@ -12,7 +12,7 @@ const FAULTS: RangeInclusive<u32> = 32..=95;
 const LIMITS: RangeInclusive<u32> = 96..=159;
 
 /// Published numbers keep their names for ever: this list only grows.
-const PUBLISHED: [(u32, &str); 7] = [
+const PUBLISHED: [(u32, &str); 13] = [
     (32, "implausible"),
     (33, "non_finite_torque"),
     (34, "wrong_target"),
@@ -20,6 +20,12 @@ const PUBLISHED: [(u32, &str); 7] = [
     (97, "rank"),
     (98, "torque_rate"),
     (99, "joining"),
+    (100, "degraded"),
+    (101, "released"),
+    (102, "shaped"),
+    (103, "scaled"),
+    (104, "bounded"),
+    (105, "unresolved"),
 ];
 
 /// A row of the registry.
@@ -104,8 +110,24 @@ fn a_status_names_its_limits_by_the_registry() {
     assert_eq!(numbers(Status::CLEAR), [0; 0]);
     assert_eq!(numbers(with(1, 0, 0, 0)), [96]);
     assert_eq!(numbers(with(0, 64, 0, 0)), [97]);
+    let bounded = |at_least, at_greatest| Status {
+        at_least: IndexSet(at_least),
+        at_greatest: IndexSet(at_greatest),
+        ..Status::CLEAR
+    };
+    assert_eq!(numbers(bounded(1, 0)), [104]);
+    assert_eq!(numbers(bounded(0, 64)), [104]);
+    let everything = Status {
+        degraded: IndexSet(1),
+        released: IndexSet(2),
+        shaped: IndexSet(4),
+        scaled: IndexSet(128),
+        at_least: IndexSet(1),
+        unresolved: true,
+        ..with(5, 3, 1, 128)
+    };
     assert_eq!(
-        numbers(with(5, 3, 1, 128)),
+        numbers(everything),
         LimitKind::ALL.iter().map(|k| *k as u8).collect::<Vec<_>>()
     );
 }

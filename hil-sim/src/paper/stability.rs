@@ -102,7 +102,7 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
     if kind == Kind::NullSpace {
         config.null_space.posture = Posture::IntegralCoupled;
     }
-    let controller = Controller::new(&LWR_IV, &config).map_err(Invalid::line)?;
+    let controller = Controller::exact(&LWR_IV, &config).map_err(Invalid::line)?;
     let cycle_s = scenario.cycle_s();
     let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, scenario.start(), cycle_s, 1);
     let mut state = State::new();

@@ -93,7 +93,7 @@ impl<T: Real> ClosedLoop<T> {
         start: JointVector<f64>,
         motions: &[Trajectory<f64>],
     ) -> Self {
-        let controller = Controller::new(arm, config).expect("a valid configuration");
+        let controller = Controller::exact(arm, config).expect("a valid configuration");
         let origins = controller.rest_reference(&start.map(T::from_f64));
         let mut origins: Vec<_> = origins.targets().iter().map(Target::cast).collect();
         let plant = Plant::new(PlantKind::Ideal, arm, start, config.cycle_s, 1);

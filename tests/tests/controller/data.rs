@@ -136,7 +136,7 @@ fn the_stages_up_to_one_leave_the_others_alone() {
         ]
     }
     let (old, new) = (results(&before), results(&after));
-    let names = Controller::<f64>::STAGES.map(|(name, _)| name);
+    let names = Controller::<f64>::EXACT_STAGES.map(|(name, _)| name);
     for (index, last) in names.into_iter().take(old.len()).enumerate() {
         let mut data = before.clone();
         controller.evaluate_until(last, &input(2), &mut data);

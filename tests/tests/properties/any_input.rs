@@ -7,10 +7,10 @@ use controller_core::fault::{FaultKind, Mode};
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::task::{Tracked, orientation};
-use controller_core::{Fault, Link, Measurement, Reference, State, Target};
+use controller_core::{Controller, Fault, Link, Measurement, Reference, State, Target};
 use proptest::prelude::*;
 use stratum_tests::config::FLANGE;
-use stratum_tests::controller;
+use stratum_tests::{controller, limited_controller};
 use stratum_tests::oracle::sample::configuration;
 use stratum_tests::random::States;
 
@@ -132,10 +132,15 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
 /// within limits, a fault is latched and the arm braked, and it is there
 /// exactly when something could not be true.
 fn anything_in_good_torque_out<T: Real>() {
-    let controller = controller::<T>(&configuration(&[
+    let configuration = configuration(&[
         (Tracked::Position(FLANGE), "xyz"),
         (Tracked::Orientation(Link::L7), "xz"),
-    ]));
+    ]);
+    anything_into(&controller::<T>(&configuration));
+    anything_into(&limited_controller::<T>(&configuration));
+}
+
+fn anything_into<T: Real>(controller: &Controller<T>) {
     let limits = controller.arm().torque_limit();
     let (faults, clean, kinds) = (Cell::new(0u32), Cell::new(0u32), Cell::new(0u32));
     let cycle = prop::collection::vec(wrong(), 0..4);
