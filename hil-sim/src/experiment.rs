@@ -198,8 +198,10 @@ impl Experiment {
             {
                 level.leak = probe.leak(plant.model(), &truth, torque, below);
             }
-            for (level, &leak) in levels.iter_mut().zip(&decision.view.leak) {
-                level.leak = leak;
+            for (level, view) in levels.iter_mut().zip(&decision.view.levels) {
+                level.leak = view.leak;
+                level.share = view.share;
+                level.disturbance = view.disturbance;
             }
             let sample = Sample {
                 t_s,
@@ -212,6 +214,7 @@ impl Experiment {
                 tau_ext: -contact_torque,
                 hand_force_n,
                 conditioning: decision.view.conditioning,
+                limits: decision.limits,
                 levels,
             };
             if !ending.has_begun() {

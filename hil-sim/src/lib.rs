@@ -23,6 +23,7 @@ pub mod controllers;
 pub mod experiment;
 pub mod explain;
 pub mod interrupt;
+pub mod limit_events;
 pub mod link;
 pub mod loopback;
 pub mod metrics;

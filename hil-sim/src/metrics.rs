@@ -8,6 +8,7 @@ use controller_core::fault::FaultKind;
 use controller_core::joint::{DOF, JointVector};
 use serde::Serialize;
 
+use crate::limit_events::LimitEvents;
 use record::run::Sample;
 
 /// Beyond its range by less a joint is at its end: degrees became radians \[rad\].
@@ -262,6 +263,10 @@ pub struct Metrics {
     pub(crate) hand_force: f64,
     /// Cycles in which limits were active.
     pub(crate) limits: LimitCounts,
+    /// What the law within limits did.
+    pub(crate) limit_events: LimitEvents,
+    arm: ArmParameters,
+    cycle_s: f64,
     /// Cycles added.
     pub(crate) cycles: usize,
 }
@@ -295,6 +300,9 @@ impl Metrics {
             last: JointVector::zeros(),
             hand_force: 0.0,
             limits: LimitCounts::default(),
+            limit_events: LimitEvents::default(),
+            arm: *arm,
+            cycle_s,
             cycles: 0,
         }
     }
@@ -342,6 +350,7 @@ impl Metrics {
             beyond |= self.excess(joint, q) > ROUNDING_RAD;
         }
         self.add_step(sample);
+        self.limit_events.add(sample, &self.arm, self.cycle_s);
         self.limits.position += usize::from(beyond);
         self.limits.torque += usize::from(sample.saturated);
         self.limits.rank += usize::from(sample.rank);
@@ -396,6 +405,16 @@ impl Metrics {
             }
         };
         self.levels.iter().zip(levels).map(figures).collect()
+    }
+
+    /// What the law within limits did, in sentences.
+    #[must_use]
+    pub fn limit_sentences(&self, levels: &[LevelSpec]) -> Vec<String> {
+        let names: Vec<_> = levels
+            .iter()
+            .map(|level| (level.label(), level.task == TaskSpec::Orientation))
+            .collect();
+        self.limit_events.sentences(&self.arm, &names)
     }
 
     /// The observer's figures.

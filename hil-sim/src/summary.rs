@@ -5,6 +5,7 @@ use serde::Serialize;
 use cell::scenario::{Metric, Scenario};
 
 use crate::after_fault::{AfterFault, Ending};
+use crate::limit_events::LimitEvents;
 use crate::metrics::{
     self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
     TorqueFigures,
@@ -91,6 +92,10 @@ pub struct Summary {
     pub joints: JointFigures,
     pub hand_force_max_n: Option<f64>,
     pub limits: LimitCounts,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit_events: Option<LimitEvents>,
+    #[serde(skip)]
+    pub limit_sentences: Vec<String>,
     pub faults: FaultCounts,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after_fault: Option<AfterFault>,
@@ -141,6 +146,11 @@ impl Summary {
             joints: metrics.joints(),
             hand_force_max_n: has_hands.then_some(metrics.hand_force),
             limits: metrics.limits,
+            limit_events: metrics
+                .limit_events
+                .is_known()
+                .then(|| metrics.limit_events.clone()),
+            limit_sentences: metrics.limit_sentences(&scenario.levels),
             faults,
             after_fault: ending.seen(),
             link: None,
@@ -174,6 +184,7 @@ impl Summary {
         .filter(|(_, cycles)| *cycles > 0)
         .map(|(what, cycles)| format!("{what} in {cycles} of {} cycles", self.cycles))
         .chain(self.torque.step.map(|step| step.to_string()))
+        .chain(self.limit_sentences.iter().cloned())
         .collect()
     }
 }

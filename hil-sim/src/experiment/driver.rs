@@ -13,6 +13,7 @@ use crate::plant::{DeadTime, Impedance, PlantOptions};
 use crate::robot::{Driving, POSITION_STIFFNESS, RobotModel};
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
+use record::run::LimitSample;
 
 /// K of the velocity-level controller \[1/s\].
 pub const RESOLVER_GAIN: f64 = 10.0;
@@ -29,6 +30,8 @@ pub(super) struct Decision {
     pub saturated: bool,
     pub rank: bool,
     pub view: PriorityView,
+    /// Of the law within limits.
+    pub limits: Option<LimitSample>,
 }
 
 /// What a torque law knew beyond its result.
@@ -37,9 +40,15 @@ pub(super) struct PriorityView {
     pub conditioning: Vec<f64>,
     /// Torque asked for below each level \[Nm\]; empty where it is not known.
     pub below: Vec<JointVector<f64>>,
-    /// Acceleration of each level by what stands below it, as the controller sees it; empty
-    /// where it does not look.
-    pub leak: Vec<f64>,
+    /// What the law within limits says of each level; empty of other laws.
+    pub levels: Vec<LevelView>,
+}
+
+/// What the law within limits says of a level, as in [`record::run::LevelSample`].
+pub(super) struct LevelView {
+    pub leak: f64,
+    pub share: f64,
+    pub disturbance: f64,
 }
 
 impl PriorityView {
@@ -48,8 +57,16 @@ impl PriorityView {
         let mobility = data.spectrum.directions().iter().map(|d| d.mobility);
         Self {
             conditioning: mobility.map(|z| z.max(0.0).sqrt()).collect(),
-            leak: data.wish.leak.to_vec(),
             below: Vec::new(),
+            levels: (data.wish.leak.iter())
+                .zip(&data.wish.level_share)
+                .zip(&data.projection.disturbance)
+                .map(|((&leak, &share), &disturbance)| LevelView {
+                    leak,
+                    share,
+                    disturbance,
+                })
+                .collect(),
         }
     }
 
@@ -60,7 +77,7 @@ impl PriorityView {
             below: (0..hierarchy.levels())
                 .map(|level| demand.below(&data.dynamics, level))
                 .collect(),
-            leak: Vec::new(),
+            levels: Vec::new(),
         }
     }
 }
@@ -120,11 +137,17 @@ impl<'a> TorqueDriver<'a> {
     }
 
     fn decide(&mut self, measurement: &Measurement<f64>, reference: &Reference<f64>) -> Decision {
-        let mut view = PriorityView::default();
+        let (mut view, mut limits) = (PriorityView::default(), None);
         let (law, gains, state) = (self.law, &self.gains, &mut self.state);
         let step = if self.controller.has_limits() {
             let step = self.controller.step(state, measurement, reference);
-            view = PriorityView::within_limits(state.data());
+            let data = state.data();
+            view = PriorityView::within_limits(data);
+            limits = Some(LimitSample {
+                status: step.status,
+                null_share: data.wish.null_share,
+                null_power: data.projection.power,
+            });
             step
         } else {
             self.controller
@@ -146,6 +169,7 @@ impl<'a> TorqueDriver<'a> {
             saturated: step.status.saturated.any(),
             rank: step.status.rank.any(),
             view,
+            limits,
         }
     }
 }
@@ -213,6 +237,7 @@ impl PositionDriver {
             saturated: limited.saturated || step.status.saturated.any(),
             rank: step.status.rank.any(),
             view: PriorityView::default(),
+            limits: None,
         }
     }
 }

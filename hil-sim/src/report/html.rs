@@ -266,6 +266,7 @@ mod tests {
                 tau_ext: joints,
                 hand_force_n: value,
                 conditioning: vec![value; 7],
+                limits: None,
                 levels: vec![level],
             };
             recording.push(&scenario, &sample);

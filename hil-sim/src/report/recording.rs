@@ -343,6 +343,7 @@ mod tests {
             tau_ext: zero,
             hand_force_n: 0.0,
             conditioning: vec![1.0; 3],
+            limits: None,
             levels: vec![level],
         }
     }

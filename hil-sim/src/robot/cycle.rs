@@ -189,6 +189,7 @@ impl Robot {
             tau_ext: -seen.contact,
             hand_force_n: seen.hand_force_n,
             conditioning: Vec::new(),
+            limits: None,
             levels,
         };
         if !self.ending.has_begun() {

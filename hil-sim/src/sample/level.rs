@@ -57,6 +57,8 @@ impl LevelProbe {
             desired_point: x.into(),
             actual_point: x.into(),
             leak: f64::NAN,
+            share: f64::NAN,
+            disturbance: f64::NAN,
             ..LevelSample::default()
         };
         if self.task == TaskSpec::Orientation {

@@ -10,9 +10,9 @@ use controller_core::task::{Tracked, orientation};
 use controller_core::{Controller, Fault, Link, Measurement, Reference, State, Target};
 use proptest::prelude::*;
 use stratum_tests::config::FLANGE;
-use stratum_tests::{controller, limited_controller};
 use stratum_tests::oracle::sample::configuration;
 use stratum_tests::random::States;
+use stratum_tests::{controller, limited_controller};
 
 use super::{CASES, for_all, regular};
 

@@ -1,0 +1,207 @@
+//! What the law within limits did in a run, in times, shares and sentences.
+
+use controller_core::arm::ArmParameters;
+use controller_core::fault::IndexSet;
+use controller_core::joint::DOF;
+use controller_core::ranges::MAX_LEVELS;
+use record::run::{LevelSample, LimitSample, Sample};
+use serde::Serialize;
+
+/// From this share of its speed limit on a joint at a bound is held by the speed limit.
+const FAST: f64 = 0.75;
+
+/// So near to an end of its range \[rad\] a joint at a bound is held by the range.
+const NEAR: f64 = 0.35;
+
+/// Why joints and levels did not get what was asked of them.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LimitEvents {
+    /// Joints, base to flange.
+    pub joints: Vec<JointEvents>,
+    /// Levels, highest priority first.
+    pub levels: Vec<LevelEvents>,
+    /// How long the null space got less than it asked for \[s\].
+    pub null_scaled_s: f64,
+    /// The smallest share of it.
+    pub null_least_share: f64,
+    /// Most exchanges in a cycle.
+    pub pivots_max: u8,
+    /// Cycles whose bounds were kept by a cut.
+    pub unresolved_cycles: usize,
+    /// Largest power that the bounds put into the null-space motion \[W\].
+    pub null_power_max_w: f64,
+}
+
+/// How long a joint was at a bound \[s\].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct JointEvents {
+    /// Near an end of its range.
+    pub at_range_s: f64,
+    /// Near its speed limit.
+    pub at_speed_s: f64,
+    /// Anywhere else: it could not be had faster.
+    pub at_acceleration_s: f64,
+}
+
+/// What a level met.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct LevelEvents {
+    /// How long it was driven less than it asked, near a singularity \[s\].
+    pub degraded_s: f64,
+    /// How long a direction was given to the levels below \[s\].
+    pub released_s: f64,
+    /// How long its command was shortened \[s\].
+    pub shaped_s: f64,
+    /// How long it got less than it asked the joints for \[s\].
+    pub scaled_s: f64,
+    /// How long the bounds of the joints took something from it \[s\].
+    pub disturbed_s: f64,
+    /// The smallest share of what it asked for.
+    pub least_share: f64,
+    /// Most that the bounds of the joints took \[m/s2\].
+    pub disturbance_max: f64,
+    /// Its largest error while something of this was so \[m\], or \[rad\].
+    pub error_max: f64,
+}
+
+/// Above this the bounds of the joints disturb a level \[m/s2\]: at K_p = 400 /s2 it is 0.025 mm.
+const DISTURBED: f64 = 0.01;
+
+impl LimitEvents {
+    /// Adds a cycle of `cycle_s` \[s\] of an arm that has its limits from `arm`.
+    pub fn add(&mut self, sample: &Sample, arm: &ArmParameters, cycle_s: f64) {
+        let Some(limits) = &sample.limits else { return };
+        self.joints.resize(DOF, JointEvents::default());
+        for (joint, (events, link)) in self.joints.iter_mut().zip(&arm.links).enumerate() {
+            let side = limits.at_bound(joint);
+            if side == 0.0 {
+                continue;
+            }
+            let (q, dq) = (sample.state.q[joint], sample.state.dq[joint]);
+            let [least, greatest] = link.position_range;
+            let way = if side > 0.0 { greatest - q } else { q - least };
+            let time = if dq * side > FAST * link.speed_limit {
+                &mut events.at_speed_s
+            } else if way < NEAR {
+                &mut events.at_range_s
+            } else {
+                &mut events.at_acceleration_s
+            };
+            *time += cycle_s;
+        }
+        self.levels
+            .resize(sample.levels.len(), LevelEvents::default());
+        for (level, (events, shown)) in self.levels.iter_mut().zip(&sample.levels).enumerate() {
+            events.add(level, shown, limits, cycle_s);
+        }
+        if limits.status.scaled.contains(MAX_LEVELS) {
+            let first = self.null_scaled_s == 0.0;
+            self.null_scaled_s += cycle_s;
+            self.null_least_share = least(first, self.null_least_share, limits.null_share);
+        }
+        self.pivots_max = self.pivots_max.max(limits.status.pivots);
+        self.unresolved_cycles += usize::from(limits.status.unresolved);
+        self.null_power_max_w = self.null_power_max_w.max(limits.null_power);
+    }
+
+    /// Whether there was such a law.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        !self.joints.is_empty()
+    }
+
+    /// One sentence per kind of event.
+    #[must_use]
+    pub fn sentences(&self, arm: &ArmParameters, levels: &[(String, bool)]) -> Vec<String> {
+        let mut said = Vec::new();
+        for (events, link) in self.joints.iter().zip(&arm.links) {
+            for (time, what) in [
+                (events.at_range_s, "at the end of its range"),
+                (events.at_speed_s, "at its speed limit"),
+                (events.at_acceleration_s, "at its acceleration limit"),
+            ] {
+                if time > 0.0 {
+                    said.push(format!("{} was {what} for {time:.2} s", link.name));
+                }
+            }
+        }
+        for (number, (events, (name, rotates))) in (1..).zip(self.levels.iter().zip(levels)) {
+            said.extend(events.sentences(number, name, *rotates));
+        }
+        if self.null_scaled_s > 0.0 {
+            said.push(format!(
+                "the null space got no more than {:.0} % of what it asked for, for {:.2} s in all",
+                100.0 * self.null_least_share,
+                self.null_scaled_s
+            ));
+        }
+        if self.unresolved_cycles > 0 {
+            said.push(format!(
+                "in {} cycles too many joints were at their bounds at once: these were kept, \
+                 priorities were not",
+                self.unresolved_cycles
+            ));
+        }
+        said
+    }
+}
+
+fn least(first: bool, before: f64, now: f64) -> f64 {
+    if first { now } else { before.min(now) }
+}
+
+impl LevelEvents {
+    fn add(&mut self, level: usize, shown: &LevelSample, limits: &LimitSample, cycle_s: f64) {
+        let status = &limits.status;
+        let time = |set: IndexSet| if set.contains(level) { cycle_s } else { 0.0 };
+        let disturbed = shown.disturbance > DISTURBED;
+        let scaled = status.scaled.contains(level);
+        if scaled {
+            self.least_share = least(self.scaled_s == 0.0, self.least_share, shown.share);
+        }
+        self.degraded_s += time(status.degraded);
+        self.released_s += time(status.released);
+        self.shaped_s += time(status.shaped);
+        self.scaled_s += time(status.scaled);
+        self.disturbed_s += if disturbed { cycle_s } else { 0.0 };
+        self.disturbance_max = self.disturbance_max.max(shown.disturbance);
+        let met = disturbed
+            || scaled
+            || [status.degraded, status.released, status.shaped]
+                .iter()
+                .any(|set| set.contains(level));
+        if met {
+            self.error_max = self.error_max.max(shown.error);
+        }
+    }
+
+    fn sentences(&self, number: usize, name: &str, rotates: bool) -> Vec<String> {
+        let mut why = Vec::new();
+        for (time, what) in [
+            (self.degraded_s, "near a singularity"),
+            (self.released_s, "in a singularity"),
+            (self.shaped_s, "with a shortened command"),
+            (self.disturbed_s, "disturbed by the bounds of joints"),
+        ] {
+            if time > 0.0 {
+                why.push(format!("{what} for {time:.2} s"));
+            }
+        }
+        if self.scaled_s > 0.0 {
+            why.push(format!(
+                "with no more than {:.0} % of what it asked for, {:.2} s in all",
+                100.0 * self.least_share,
+                self.scaled_s
+            ));
+        }
+        if why.is_empty() {
+            return why;
+        }
+        let unit = if rotates { "mrad" } else { "mm" };
+        vec![format!(
+            "level {number} ({name}) gave way by up to {:.3} {unit}: {}",
+            1e3 * self.error_max,
+            why.join(", ")
+        )]
+    }
+}
