@@ -293,7 +293,7 @@ impl StratumLevel {
         let offset = self.offset;
         match self.task {
             STRATUM_TASK_POSITION => Ok(Task::position(LinkPoint { link, offset }, axes, gains)),
-            STRATUM_TASK_ORIENTATION => Ok(Task::orientation(link, axes, gains)),
+            STRATUM_TASK_ORIENTATION => Ok(Task::orientation(link.frame(), axes, gains)),
             value => Err(number(
                 level,
                 codes::STRATUM_CONFIG_CHOICE,
@@ -381,7 +381,7 @@ impl StratumSettings {
 
     #[inline(never)]
     fn tasks(&self) -> Result<TaskSet, Refusal> {
-        let unused = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        let unused = Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let mut tasks = [unused; STRATUM_LEVELS];
         let count = usize::try_from(self.level_count).unwrap_or(usize::MAX);
         let used = tasks.get_mut(..count).filter(|used| !used.is_empty());

@@ -5,7 +5,8 @@ use core::fmt;
 use crate::arm::ArmError;
 use crate::joint::DOF;
 use crate::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, DISTORTION_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS,
+    POINT_OFFSET_MAX_M,
 };
 use crate::real::Real;
 
@@ -58,6 +59,13 @@ pub enum ConfigError {
         /// Its level.
         level: usize,
         /// The coordinate \[m\].
+        value: f64,
+    },
+    /// A task frame whose axes are not orthogonal and of length 1, or a mirror image.
+    FrameRotation {
+        /// Its level.
+        level: usize,
+        /// Largest entry of R^T R - 1, more than 1 for a mirror image.
         value: f64,
     },
     /// An entry of a gain matrix is not finite, or beyond [`GAIN_MAX`].
@@ -173,6 +181,11 @@ impl fmt::Display for ConfigError {
                 f,
                 "level {level}: point offset {value} m; allowed -{POINT_OFFSET_MAX_M} to \
                  {POINT_OFFSET_MAX_M}"
+            ),
+            Self::FrameRotation { level, value } => write!(
+                f,
+                "level {level}: rotation of the frame is distorted by {value:e}; allowed 0 to \
+                 {DISTORTION_MAX:e}"
             ),
             Self::GainValue { gain, level, value } => {
                 place(f, gain, level)?;

@@ -109,7 +109,7 @@ impl LevelSpec {
         let point = self.point.resolve();
         match self.task {
             TaskSpec::Position => Task::position(point, axes, gains),
-            TaskSpec::Orientation => Task::orientation(point.link, axes, gains),
+            TaskSpec::Orientation => Task::orientation(point.link.frame(), axes, gains),
         }
     }
 

@@ -3,8 +3,8 @@
 use core::fmt;
 
 use crate::arm::parameters::{ArmParameters, LinkParameters};
-use crate::arm::pose::Pose;
-use crate::ranges::{ANGLE_MAX, GRAVITY_MAX, MASS_MIN, POSITION_MARGIN};
+use crate::arm::pose::{Pose, distortion};
+use crate::ranges::{ANGLE_MAX, DISTORTION_MAX, GRAVITY_MAX, MASS_MIN, POSITION_MARGIN};
 
 /// Why parameter tables do not make a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,9 +125,6 @@ pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
         .try_for_each(|(number, link)| joint(number, link))
 }
 
-/// Rotations printed with ten digits pass; those with five do not.
-const DISTORTION_MAX: f64 = 1e-9;
-
 fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
     finite(0, shift, &pose.shift)?;
     finite(0, rotation, pose.rotation.as_flattened())?;
@@ -135,7 +132,7 @@ fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmErro
     within(
         0,
         "distortion of a rotation of base or flange",
-        pose.distortion(),
+        distortion(&pose.rotation),
         allowed,
     )
 }

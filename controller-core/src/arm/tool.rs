@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::link::{Link, LinkPoint};
+use crate::arm::link::{Link, LinkFrame, LinkPoint};
 use crate::arm::parameters::ArmParameters;
 use crate::arm::pose::Pose;
 
@@ -33,7 +33,7 @@ impl ArmParameters {
         // They are those of the bare arm.
         arm.damping_postures = &[];
         let [.., link] = &mut arm.links;
-        let turn = rotation(&self.flange) * rotation(&tool.pose);
+        let turn = self.turn_of(tool);
         let own_com = Vector3::from(link.com);
         let tool_com = Vector3::from(self.tool_point(tool).offset) + turn * Vector3::from(tool.com);
         let own = Body {
@@ -61,6 +61,21 @@ impl ArmParameters {
             link: Link::L7,
             offset: self.flange.place(tool.pose.shift),
         }
+    }
+
+    /// A tool's frame, which turns with link 7.
+    #[must_use]
+    pub fn tool_frame(&self, tool: &Tool) -> LinkFrame {
+        LinkFrame {
+            link: Link::L7,
+            // nalgebra gives columns.
+            rotation: self.turn_of(tool).transpose().into(),
+        }
+    }
+
+    /// From axes of a tool to those of DH frame 7.
+    fn turn_of(&self, tool: &Tool) -> Matrix3<f64> {
+        rotation(&self.flange) * rotation(&tool.pose)
     }
 }
 

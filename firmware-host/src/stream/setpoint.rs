@@ -198,7 +198,9 @@ impl fmt::Display for Level<'_> {
                     None => write!(f, "(position of a point of link {})", point.link.number()),
                 }
             }
-            Tracked::Orientation(link) => write!(f, "(orientation of link {})", link.number()),
+            Tracked::Orientation(frame) => {
+                write!(f, "(orientation of link {})", frame.link.number())
+            }
         }
     }
 }
@@ -211,7 +213,7 @@ pub(super) mod tests {
 
     const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
     const FLANGE: Task = Task::position(LWR_IV_FLANGE, Axes::XYZ, GAINS);
-    const LINK_7: Task = Task::orientation(Link::L7, Axes::XYZ, GAINS);
+    const LINK_7: Task = Task::orientation(Link::L7.frame(), Axes::XYZ, GAINS);
     const HEIGHT: Task = Task::position(
         LinkPoint {
             link: Link::L3,

@@ -243,7 +243,7 @@ impl Level {
                 },
             ),
             TaskSpec::Orientation => (
-                Task::orientation(point.link, axes, gains),
+                Task::orientation(point.link.frame(), axes, gains),
                 Target::Orientation {
                     q: Quaternion::from_iterator(self.x.iter().copied().chain([0.0; 4]).take(4)),
                     w: vector(&self.dx),

@@ -134,7 +134,7 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
 fn anything_in_good_torque_out<T: Real>() {
     let controller = controller::<T>(&configuration(&[
         (Tracked::Position(FLANGE), "xyz"),
-        (Tracked::Orientation(Link::L7), "xz"),
+        (Tracked::Orientation(Link::L7.frame()), "xz"),
     ]));
     let limits = controller.arm().torque_limit();
     let (faults, clean, kinds) = (Cell::new(0u32), Cell::new(0u32), Cell::new(0u32));
