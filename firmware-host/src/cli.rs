@@ -356,12 +356,18 @@ impl RunOptions {
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        Stream::listen(address, self.references_from, tasks, timeout)
-            .map(Source::Stream)
-            .map_err(|error| {
-                let allowed = format!("an address of this PC and a free port ({error})");
-                Invalid::new("--references", address, allowed)
-            })
+        Stream::listen(
+            address,
+            self.references_from,
+            tasks,
+            &scenario.arm(),
+            timeout,
+        )
+        .map(Source::Stream)
+        .map_err(|error| {
+            let allowed = format!("an address of this PC and a free port ({error})");
+            Invalid::new("--references", address, allowed)
+        })
     }
 
     /// The scenario's start posture and how far the arm may be from it \[rad\].

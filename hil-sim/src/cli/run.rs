@@ -241,7 +241,7 @@ fn execute(
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
         controller,
-        |instant| files.push(scenario, instant),
+        |instant| files.push(instant),
         |share| progress.show(share),
     );
     progress.clear();

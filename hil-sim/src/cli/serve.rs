@@ -220,7 +220,7 @@ impl ServeOptions {
         ));
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
-        let mut sink = |instant: &Sample| files.push(&scenario, instant);
+        let mut sink = |instant: &Sample| files.push(instant);
         let realtime = (!service.lockstep).then(|| Realtime::ask_without_memory(self.cpu));
         if let Some(realtime) = &realtime {
             tell(realtime.line());

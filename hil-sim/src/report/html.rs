@@ -268,11 +268,11 @@ mod tests {
                 conditioning: vec![value; 7],
                 levels: vec![level],
             };
-            recording.push(&scenario, &sample);
+            recording.push(&sample);
         }
         recording.arms.push(ArmSnapshot {
             t_s: 0.0,
-            joints: [[value; 3]; 4],
+            corners: vec![[value; 3]; 5],
         });
         recording.finish();
         (summary, scenario, recording)
