@@ -70,7 +70,7 @@ enum Command {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 struct RunOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file, which says arm, mount and tool
     #[arg(long, default_value = "two-level")]
     scenario: String,
     /// Address and port to which the robot sends

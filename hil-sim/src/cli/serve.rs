@@ -54,7 +54,7 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: start, contacts, what is judged
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: arm, start, contacts, what is judged
     #[arg(long, default_value = "two-level")]
     scenario: String,
     /// The arm: ideal, realistic
