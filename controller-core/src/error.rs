@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use crate::arm::ArmError;
+use crate::arm::{ArmError, ArmParameters};
+use crate::fault::{JointLabel, Named, NamesJoints};
 use crate::joint::DOF;
 use crate::ranges::{
     CYCLE_RANGE_S, DEAD_CYCLES_MAX, DISTORTION_MAX, GAIN_MAX, MAX_LEVELS, MAX_ROWS,
@@ -158,8 +159,17 @@ pub enum ConfigError {
     },
 }
 
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl ConfigError {
+    /// The same as text that calls joints by the names that their maker gave them.
+    #[must_use]
+    pub fn named<'a>(&'a self, arm: &'a ArmParameters) -> impl fmt::Display + 'a {
+        Named { of: self, arm }
+    }
+}
+
+impl NamesJoints for ConfigError {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result {
+        let label = |number| JointLabel { number, arm };
         let place = |f: &mut fmt::Formatter<'_>, gain: Gain, level: usize| {
             if level > 0 {
                 write!(f, "level {level}: ")?;
@@ -167,7 +177,7 @@ impl fmt::Display for ConfigError {
             write!(f, "{}", gain.name())
         };
         match *self {
-            Self::Arm(error) => error.fmt(f),
+            Self::Arm(error) => write!(f, "{error}"),
             Self::Levels { levels } => {
                 write!(f, "there are {levels} tasks; allowed 1 to {MAX_LEVELS}")
             }
@@ -234,8 +244,8 @@ impl fmt::Display for ConfigError {
                 bound,
             } => write!(
                 f,
-                "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
-                 {bound:.1}"
+                "observer gain of {} is {value} 1/s; it must be above 0 and at most {bound:.1}",
+                label(joint)
             ),
             Self::ResolverGain { value, bound } => write!(
                 f,
@@ -264,8 +274,9 @@ impl fmt::Display for ConfigError {
             } => {
                 write!(
                     f,
-                    "null-space damping of joint {joint} is too strong for the cycle: \
-                     h lambda_max = {value:.3} at the posture"
+                    "null-space damping of {} is too strong for the cycle: \
+                     h lambda_max = {value:.3} at the posture",
+                    label(joint)
                 )?;
                 for q in posture {
                     write!(f, " {}", (q.to_degrees() + 0.5).floor_small() as i32)?;
@@ -273,6 +284,12 @@ impl fmt::Display for ConfigError {
                 write!(f, " deg; it must be below {bound:.3}")
             }
         }
+    }
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, None)
     }
 }
 

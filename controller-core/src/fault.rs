@@ -224,22 +224,57 @@ pub struct Fault {
     pub max: f64,
 }
 
+/// A joint in a text: by the name that its maker gave it, without an arm by its number.
+pub(crate) struct JointLabel<'a> {
+    /// Counted from 1.
+    pub number: usize,
+    pub arm: Option<&'a ArmParameters>,
+}
+
+impl fmt::Display for JointLabel<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let link = self.number.wrapping_sub(1);
+        match self.arm.and_then(|arm| arm.links.get(link)) {
+            Some(link) => f.write_str(link.name),
+            None => write!(f, "joint {}", self.number),
+        }
+    }
+}
+
+/// What is text with or without the names of an arm's joints.
+pub(crate) trait NamesJoints {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result;
+}
+
+/// The text with them.
+pub(crate) struct Named<'a, T> {
+    pub of: &'a T,
+    pub arm: &'a ArmParameters,
+}
+
+impl<T: NamesJoints> fmt::Display for Named<'_, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.of.write(f, Some(self.arm))
+    }
+}
+
 impl Fault {
     /// The same as text that calls joints by the names that their maker gave them.
     #[must_use]
     pub fn named<'a>(&'a self, arm: &'a ArmParameters) -> impl fmt::Display + 'a {
-        NamedFault { fault: self, arm }
+        Named { of: self, arm }
     }
+}
 
-    /// `joint` is its name; none: its number.
-    fn write(&self, f: &mut fmt::Formatter<'_>, joint: Option<&str>) -> fmt::Result {
+impl NamesJoints for Fault {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result {
         let (name, place) = self.quantity.name();
         write!(f, "{}: {name}", self.kind.name())?;
-        match (place, joint) {
-            (Place::Joint, Some(joint)) => write!(f, " {joint}")?,
-            (Place::Joint, None) => write!(f, " joint {}", self.index)?,
-            (Place::Level, _) => write!(f, " level {}", self.index)?,
-            (Place::Whole, _) => (),
+        let number = self.index.into();
+        match place {
+            Place::Joint => write!(f, " {}", JointLabel { number, arm })?,
+            Place::Level => write!(f, " level {number}")?,
+            Place::Whole => (),
         }
         if self.quantity == Quantity::TargetKind {
             let word = |code: f64| {
@@ -268,19 +303,6 @@ impl Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.write(f, None)
-    }
-}
-
-struct NamedFault<'a> {
-    fault: &'a Fault,
-    arm: &'a ArmParameters,
-}
-
-impl fmt::Display for NamedFault<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let link = usize::from(self.fault.index).wrapping_sub(1);
-        self.fault
-            .write(f, self.arm.links.get(link).map(|link| link.name))
     }
 }
 

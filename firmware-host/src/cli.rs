@@ -347,7 +347,7 @@ impl RunOptions {
         config.dry = self.dry;
         // What the robot's cycle will be is not known yet; all else is checked now.
         Controller::<f64>::new(&config.arm, &config.controller)
-            .map_err(|error| Invalid::line(error).within(&scenario.name))?;
+            .map_err(|error| Invalid::line(error.named(&config.arm)).within(&scenario.name))?;
         Ok(config)
     }
 

@@ -54,8 +54,9 @@ impl Experiment {
     /// A configuration that the core refuses, for example a damping that is too
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
-        Controller::new(&self.scenario.arm().parameters, &self.controller_config()?)
-            .map_err(|error| Invalid::line(error).within(&self.scenario.name))
+        let arm = self.scenario.arm().parameters;
+        Controller::new(&arm, &self.controller_config()?)
+            .map_err(|error| Invalid::line(error.named(&arm)).within(&self.scenario.name))
     }
 
     /// What that controller is made from.

@@ -9,7 +9,7 @@ use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
 use crate::plant::friction::FrictionLaw;
 use cell::names::PlantKind;
-use cell::scenario::PostureSpec;
+use cell::scenario::{PostureSpec, Scenario};
 use cell::terminal::tell;
 use record::run::Sample;
 
@@ -19,7 +19,7 @@ const AHEAD_S: f64 = 20.0;
 /// Every note on this run.
 pub fn tell_all(experiment: &Experiment, controller: &Controller<f64>) {
     warn_of_damping(experiment, controller);
-    say_what_is_unknown(experiment);
+    say_what_is_unknown(&experiment.scenario, experiment.plant);
     if let Ok(Some(note)) = drift(experiment, controller) {
         tell(format_args!("note: {note}"));
     }
@@ -44,9 +44,9 @@ fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
 }
 
 /// A realistic plant is less so where the table of its arm has no friction.
-fn say_what_is_unknown(experiment: &Experiment) {
-    let arm = experiment.scenario.arm().parameters;
-    if experiment.plant == PlantKind::Realistic && FrictionLaw::of(&arm).is_none() {
+pub fn say_what_is_unknown(scenario: &Scenario, plant: PlantKind) {
+    let arm = scenario.arm().parameters;
+    if plant == PlantKind::Realistic && FrictionLaw::of(&arm).is_none() {
         tell(format_args!(
             "note: friction of {} is not known: the plant has none",
             arm.name

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::files::{Files, announce};
+use super::notes;
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
 use crate::output::Folder;
@@ -218,6 +219,7 @@ impl ServeOptions {
              release, drives off|on, quit",
             service.client
         ));
+        notes::say_what_is_unknown(&scenario, setup.plant);
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
         let mut sink = |instant: &Sample| files.push(instant);
