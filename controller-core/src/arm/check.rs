@@ -44,7 +44,7 @@ pub enum ArmError {
     /// distribution of positive mass has this inertia. Then a mass matrix need
     /// not be positive definite.
     ImpossibleInertia {
-        /// Link (1..=7).
+        /// Link (1..=7), 0 for a tool.
         link: usize,
         /// Smallest leading minor of the matrix of second moments, normalised
         /// by its trace; must not be below 0.
@@ -84,20 +84,27 @@ impl fmt::Display for ArmError {
                 place(f, link)?;
                 write!(f, "{parameter} = {value}; allowed {min} to {max}")
             }
-            Self::ImpossibleInertia { link, value } => write!(
-                f,
-                "link {link}: inertia gives a negative second moment of mass ({value:e} of its \
-                 trace); it must be at least 0 (triangle inequality of the principal moments)"
-            ),
+            Self::ImpossibleInertia { link, value } => {
+                match link {
+                    0 => write!(f, "tool: ")?,
+                    _ => place(f, link)?,
+                }
+                write!(
+                    f,
+                    "inertia gives a negative second moment of mass ({value:e} of its trace); it \
+                     must be at least 0 (triangle inequality of the principal moments)"
+                )
+            }
         }
     }
 }
 
 impl core::error::Error for ArmError {}
 
-/// Second moment of mass about the centre of mass: tr(I)/2 1 - I.
-pub(super) fn second_moment(link: &LinkParameters) -> nalgebra::Matrix3<f64> {
-    let [xx, xy, xz, yy, yz, zz] = link.inertia;
+/// Second moment of mass about the centre of mass, tr(I)/2 1 - I, of the inertia I in the order
+/// of the tables.
+pub(super) fn second_moment(inertia: &[f64; 6]) -> nalgebra::Matrix3<f64> {
+    let [xx, xy, xz, yy, yz, zz] = *inertia;
     let half_trace = (xx + yy + zz) / 2.0;
     nalgebra::Matrix3::new(
         half_trace - xx,
@@ -125,13 +132,14 @@ pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
         .try_for_each(|(number, link)| joint(number, link))
 }
 
-fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
+/// Whether a pose of the arm has the axes of a frame.
+pub(super) fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
     finite(0, shift, &pose.shift)?;
     finite(0, rotation, pose.rotation.as_flattened())?;
     let allowed = [0.0, DISTORTION_MAX];
     within(
         0,
-        "distortion of a rotation of base or flange",
+        "distortion of a rotation of base, flange or tool",
         distortion(&pose.rotation),
         allowed,
     )
@@ -192,19 +200,21 @@ fn joint(number: usize, link: &LinkParameters) -> Result<(), ArmError> {
             within(number, parameter, value, [0.0, unbounded])?;
         }
     }
-    let value = smallest_minor(&second_moment(link));
+    possible(number, &link.inertia)
+}
+
+/// Whether a body can have this inertia.
+pub(super) fn possible(link: usize, inertia: &[f64; 6]) -> Result<(), ArmError> {
+    let value = smallest_minor(&second_moment(inertia));
     // Identified bodies sit on the border of the feasible set: allow the
     // rounding of their printed numbers.
     if value < -1e-9 {
-        return Err(ArmError::ImpossibleInertia {
-            link: number,
-            value,
-        });
+        return Err(ArmError::ImpossibleInertia { link, value });
     }
     Ok(())
 }
 
-fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), ArmError> {
+pub(super) fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), ArmError> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(&value) => Err(ArmError::NonFinite {
             link,
@@ -215,7 +225,7 @@ fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), Ar
     }
 }
 
-fn within(
+pub(super) fn within(
     link: usize,
     parameter: &'static str,
     value: f64,

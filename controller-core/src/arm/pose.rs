@@ -23,6 +23,23 @@ impl Pose {
         }
     }
 
+    /// Pose in the parent frame of what has the pose `inner` in this frame.
+    #[must_use]
+    pub fn carrying(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.turned(&inner.rotation),
+            shift: self.place(inner.shift),
+        }
+    }
+
+    /// Rotation in the parent frame of what is turned by `inner` in this frame.
+    #[must_use]
+    pub fn turned(&self, inner: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let [first, second, third] = inner;
+        self.rotation
+            .map(|[a, b, c]| core::array::from_fn(|i| a * first[i] + b * second[i] + c * third[i]))
+    }
+
     /// Where `point` \[m\] of the frame is in the parent frame \[m\].
     #[must_use]
     pub fn place(&self, point: [f64; 3]) -> [f64; 3] {
