@@ -53,7 +53,7 @@ else
   skipped "header: cbindgen $cbindgen_version is not installed and could not be"
 fi
 
-programs="bare_loop replay errors"
+programs="bare_loop tool replay errors"
 # On the target the stack that they need is measured as well.
 target_programs="$programs stack"
 task="rtos_task.c rtos_host.c robot_host.c board.c board_host.c"
@@ -133,6 +133,7 @@ if have gcc; then
       gcc $flags "$program.c" board.c board_host.c "$archive" $system -o "$out/$program-$precision"
     done
     "$out/bare_loop-$precision"
+    "$out/tool-$precision"
     "$out/errors-$precision" > "$out/errors.txt" || { cat "$out/errors.txt"; exit 1; }
     tail -n 1 "$out/errors.txt"
     "$out/replay-$precision" > "$out/host-$precision"
@@ -267,7 +268,7 @@ else
         on_target "$out/$program-$precision.elf" > "$out/target-$program-$precision" 2>&1 ||
           { cat "$out/target-$program-$precision"; fail "$program failed on the target"; }
       done
-      cat "$out/target-bare_loop-$precision"
+      cat "$out/target-bare_loop-$precision" "$out/target-tool-$precision"
       tail -n 1 "$out/target-errors-$precision"
       cat "$out/target-stack-$precision"
       same "target-replay-$precision" "$precision"

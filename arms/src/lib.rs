@@ -9,6 +9,7 @@ pub mod gen3;
 pub mod iiwa_14;
 pub mod iiwa_7;
 pub mod lwr_iv;
+mod openarm;
 pub mod openarm_v10;
 pub mod openarm_v20;
 pub mod panda;

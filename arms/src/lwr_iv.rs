@@ -10,8 +10,8 @@
 //!
 //! Only M(q), C(q, dq) and g(q) are meaningful: single masses and centres of
 //! mass are not identified (27 free directions). There is no rotor inertia and
-//! no joint elasticity. M77 = 1.584e-4 kg m2, which bounds the damping of
-//! joint 7 (see [`controller_core::law::sampling`]).
+//! no joint elasticity; friction is chosen, not identified. M77 = 1.584e-4 kg m2,
+//! which bounds the damping of joint 7 (see [`controller_core::law::sampling`]).
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -129,6 +129,15 @@ const fn range(deg: f64) -> [f64; 2] {
     [-deg.to_radians(), deg.to_radians()]
 }
 
+/// Friction of a joint from F_c \[Nm\] and F_v \[Nms/rad\].
+const fn friction(coulomb: f64, viscous: f64) -> Friction {
+    Friction {
+        coulomb,
+        viscous,
+        smoothing: 0.02,
+    }
+}
+
 /// KUKA LWR IV+ without tool, mounted upright.
 pub const LWR_IV: ArmParameters = ArmParameters {
     name: "lwr_iv",
@@ -145,7 +154,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
             com: [0.0, 0.0, 0.0],
             inertia: [0.009, 0.0, 0.0, 0.006600186160950106, 0.0, 0.009],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(1.0, 0.8),
             position_range: range(170.0),
             speed_limit: 110.0_f64.to_radians(),
             end_approach: None,
@@ -174,7 +183,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.005796584477358507,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(1.0, 0.8),
             position_range: range(120.0),
             speed_limit: 110.0_f64.to_radians(),
             end_approach: None,
@@ -203,7 +212,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.092508433055912,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(0.7, 0.6),
             position_range: range(170.0),
             speed_limit: 128.0_f64.to_radians(),
             end_approach: None,
@@ -232,7 +241,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.004122932378740494,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(0.7, 0.6),
             position_range: range(120.0),
             speed_limit: 128.0_f64.to_radians(),
             end_approach: None,
@@ -261,7 +270,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.00407010983651615,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(0.3, 0.2),
             position_range: range(170.0),
             speed_limit: 204.0_f64.to_radians(),
             end_approach: None,
@@ -290,7 +299,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.004016260281124971,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(0.2, 0.1),
             position_range: range(120.0),
             speed_limit: 184.0_f64.to_radians(),
             end_approach: None,
@@ -315,7 +324,7 @@ pub const LWR_IV: ArmParameters = ArmParameters {
                 0.0001583999999992258,
             ],
             rotor_inertia: 0.0,
-            friction: Friction::NONE,
+            friction: friction(0.05, 0.02),
             position_range: range(170.0),
             speed_limit: 184.0_f64.to_radians(),
             end_approach: None,

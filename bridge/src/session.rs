@@ -18,6 +18,7 @@
 mod config;
 mod report;
 
+use controller_core::arm::ArmParameters;
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::fault::Mode;
 use controller_core::joint::{DOF, JointState, JointVector, zeros};
@@ -99,6 +100,12 @@ impl Session {
             cycle_s: 0.0,
             last: None,
         }
+    }
+
+    /// The arm that the controller believes in.
+    #[must_use]
+    pub fn arm(&self) -> &ArmParameters {
+        &self.config.arm
     }
 
     /// Where the conversation stands.

@@ -26,7 +26,7 @@ fn config(duration_s: f64) -> SessionConfig {
 fn two_kinds() -> SessionConfig {
     let gains = TaskGains::uniform(400.0, 40.0);
     let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, gains);
-    let facing = Task::orientation(Link::L7, Axes::XYZ, gains);
+    let facing = Task::orientation(Link::L7.frame(), Axes::XYZ, gains);
     config_of(&[flange, facing], 60.0)
 }
 

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use controller_core::joint::DOF;
 use controller_core::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, MAX_LEVELS, MAX_ROWS, QUATERNION_NORMS,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, MASS_MIN, MAX_LEVELS, MAX_ROWS, QUATERNION_NORMS,
 };
 
 use crate::invalid::Invalid;
@@ -110,6 +110,15 @@ pub const LINK: Range<usize> = Range::new(1, DOF);
 
 /// A coordinate of a point in its link's frame, or of a move \[m\].
 pub const OFFSET_M: Range<f64> = Range::new(-2.0, 2.0);
+
+/// Roll, pitch or yaw \[deg\].
+pub const ANGLE_DEG: Range<f64> = Range::new(-360.0, 360.0);
+
+/// Mass of a tool \[kg\].
+pub const TOOL_MASS_KG: Range<f64> = Range::new(MASS_MIN, 100.0);
+
+/// A moment or product of inertia of a tool \[kg m2\].
+pub const INERTIA_KG_M2: Range<f64> = Range::new(-100.0, 100.0);
 
 /// Gains that act on tasks and joints, and of the observer; of K_p \[1/s2\], K_d \[1/s\],
 /// K_q \[Nm/rad\], D \[Nms/rad\], c and K_I \[1/s\].

@@ -2,6 +2,7 @@
 //! null-space compliance, contacts and acceptance limits. The built-in scenarios are TOML files
 //! like any other.
 
+mod arm;
 mod contact;
 mod hand;
 mod level;
@@ -13,8 +14,6 @@ mod session;
 
 use std::path::Path;
 
-use arms::LWR_IV;
-use controller_core::arm::ArmParameters;
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
@@ -28,13 +27,14 @@ use crate::ranges::{
 };
 use crate::reader;
 
+pub use arm::{EquippedArm, Mount, TOOL_POINT, ToolSpec};
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec, TaskSpec};
 pub use metric::{Metric, Unit};
 pub use point::PointSpec;
 pub use push::Push;
-pub use reference::ReferenceSpec;
+pub use reference::{AxisOf, ReferenceSpec};
 pub use session::ScenarioSource;
 
 /// The scenarios that come with the program: name and TOML text.
@@ -51,8 +51,14 @@ pub const BUILT_IN: &[(&str, &str)] = &[
 pub struct Scenario {
     /// Name, also of the output folder.
     pub name: String,
-    /// Name of the arm.
+    /// Name of the arm, one of [`arms::ALL`].
     pub robot: String,
+    /// How it is mounted; as its table says unless given.
+    #[serde(default)]
+    pub mount: Option<Mount>,
+    /// What it carries at its flange.
+    #[serde(default)]
+    pub tool: Option<ToolSpec>,
     /// Length \[s\].
     pub duration_s: f64,
     /// Control cycle \[ms\].
@@ -205,17 +211,16 @@ impl Scenario {
             let allowed = format!("{NAME_LETTERS} letters, digits, '-' and '_'");
             return Err(Invalid::new("name", &self.name, allowed));
         }
-        if self.robot != LWR_IV.name {
-            return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
-        }
+        let arm = EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())?;
+        let arm = &arm;
         DURATION_S.check("duration_s", self.duration_s)?;
         CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
-        for (joint, (&angle, link)) in (1..).zip(self.start_deg.iter().zip(&LWR_IV.links)) {
+        for (&angle, link) in self.start_deg.iter().zip(&arm.parameters.links) {
             // Back from radians to the number of the data sheet.
             let [min, max] = link
                 .position_range
                 .map(|end| (end.to_degrees() * 1e9).round() / 1e9);
-            let thing = format_args!("start_deg of joint {joint}");
+            let thing = format_args!("start_deg of {}", link.name);
             Range::new(min, max).check(thing, angle)?;
         }
         let levels = self.levels.len();
@@ -225,7 +230,7 @@ impl Scenario {
         }
         for (number, level) in self.levels.iter().enumerate() {
             level
-                .validate()
+                .validate(arm)
                 .map_err(|error| error.in_list("level", number))?;
         }
         let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
@@ -234,16 +239,16 @@ impl Scenario {
             return Err(Invalid::new("level", given, ROWS));
         }
         self.null_space
-            .validate()
+            .validate(arm)
             .map_err(|error| error.in_table("null_space"))?;
         GAIN.check("gain", self.observer.gain)
             .map_err(|error| error.in_table("observer"))?;
         for (number, push) in self.pushes.iter().enumerate() {
-            push.validate()
+            push.validate(arm)
                 .map_err(|error| error.in_list("contact", number))?;
         }
         for (number, hand) in self.hands.iter().enumerate() {
-            hand.validate()
+            hand.validate(arm)
                 .map_err(|error| error.in_list("hand", number))?;
         }
         for (number, limit) in self.limits.iter().enumerate() {
@@ -259,10 +264,12 @@ impl Scenario {
         Ok(())
     }
 
-    /// Tables of the arm.
+    /// The arm as it stands. The scenario must be valid; of one that is not, the first arm
+    /// there is.
     #[must_use]
-    pub fn arm(&self) -> &'static ArmParameters {
-        &LWR_IV
+    pub fn arm(&self) -> EquippedArm {
+        EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
+            .unwrap_or_else(|_| EquippedArm::of(arms::ALL[0]))
     }
 
     /// Start posture \[rad\].
@@ -290,7 +297,8 @@ impl Scenario {
     /// # Errors
     /// Tasks that the core refuses.
     pub fn controller_config(&self, dead_cycles: u8) -> Result<ControllerConfig, Invalid> {
-        let tasks: Vec<_> = self.levels.iter().map(LevelSpec::task).collect();
+        let arm = self.arm();
+        let tasks: Vec<_> = self.levels.iter().map(|level| level.task(&arm)).collect();
         Ok(ControllerConfig {
             tasks: TaskSet::new(&tasks).map_err(|error| Invalid::line(error).within(&self.name))?,
             null_space: NullSpace {
@@ -331,10 +339,11 @@ impl Scenario {
 }
 
 impl NullSpaceSpec {
-    fn validate(&self) -> Result<(), Invalid> {
-        for (joint, (&stiffness, &damping)) in (1..).zip(self.stiffness.iter().zip(&self.damping)) {
-            GAIN.check(format_args!("stiffness of joint {joint}"), stiffness)?;
-            GAIN.check(format_args!("damping of joint {joint}"), damping)?;
+    fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
+        let gains = self.stiffness.iter().zip(&self.damping);
+        for (joint, (&stiffness, &damping)) in arm.joints().iter().zip(gains) {
+            GAIN.check(format_args!("stiffness of {joint}"), stiffness)?;
+            GAIN.check(format_args!("damping of {joint}"), damping)?;
         }
         GAIN.check("damping_rate", self.damping_rate)?;
         RATE_GAIN.check("rate_gain", self.rate_gain).map(drop)

@@ -18,6 +18,14 @@ fn rows(path: &str, heading: &str, rows: &[(&str, &[String])]) {
     }
 }
 
+/// The names of all arms.
+fn arms() -> Vec<String> {
+    arms::ALL
+        .iter()
+        .map(|arm| format!("`{}`", arm.name))
+        .collect()
+}
+
 fn text(range: Range<f64>) -> String {
     range.to_string()
 }
@@ -34,6 +42,13 @@ fn the_tables_say_the_ranges() {
                 "`[[level]]` |",
                 &[LEVELS.to_string(), format!("at most {}", ROWS.max)],
             ),
+            ("`robot` |", &arms()),
+            ("`mount.rpy_deg` |", &[text(ANGLE_DEG)]),
+            ("`tool.shift_m` |", &[text(OFFSET_M)]),
+            ("`tool.rpy_deg` |", &[text(ANGLE_DEG)]),
+            ("`tool.mass_kg` |", &[text(TOOL_MASS_KG)]),
+            ("`tool.center_of_mass_m` |", &[text(OFFSET_M)]),
+            ("`tool.inertia_kg_m2` |", &[text(INERTIA_KG_M2)]),
             ("`level.point` |", &[text(OFFSET_M)]),
             ("`level.stiffness`, `level.damping` |", &[text(GAIN)]),
             (
@@ -74,6 +89,7 @@ fn the_tables_say_the_ranges() {
                 "`levels` |",
                 &[LEVELS.to_string(), format!("at most {}", ROWS.max)],
             ),
+            ("`robot` |", &arms()),
             ("`point` |", &[text(OFFSET_M)]),
             ("`x`, `dx`, `ddx` |", &[text(QUATERNION_NORM)]),
         ],

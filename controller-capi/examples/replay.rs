@@ -53,7 +53,7 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
         tasks: TaskSet::new(&[
             Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
             Task::position(elbow, Axes::XY, gains),
-            Task::orientation(Link::L7, Axes::Z, gains),
+            Task::orientation(Link::L7.frame(), Axes::Z, gains),
         ])?,
         null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; 7],

@@ -40,7 +40,9 @@ enum {
   STRATUM_ERROR_MISMATCH = 7,
   // Header and library are of different versions of the interface.
   STRATUM_ERROR_ABI = 8,
-  // No arm of this name is built in; there is lwr_iv.
+  // No arm of this name is built in; there are lwr_iv, iiwa_7, iiwa_14, panda,
+  // panda_identified, fr3, gen3, openarm_v10_left, openarm_v10_right, openarm_v20_left,
+  // openarm_v20_right.
   STRATUM_ERROR_PRESET = 9,
   // The text buffer has size 0.
   STRATUM_ERROR_TEXT_SIZE = 10,
@@ -86,12 +88,16 @@ enum {
   STRATUM_CONFIG_INERTIA_DAMPING = 141,
   // Settings: the null-space damping is too strong for the cycle.
   STRATUM_CONFIG_DAMPING = 142,
-  // Arm: a parameter is not finite.
+  // Settings: the frame of a level has axes that are not orthogonal and of length 1.
+  STRATUM_CONFIG_FRAME_ROTATION = 143,
+  // Arm or tool: a parameter is not finite.
   STRATUM_CONFIG_ARM_NON_FINITE = 160,
   // Arm: a parameter that must be above 0 is not.
   STRATUM_CONFIG_ARM_NOT_POSITIVE = 161,
-  // Arm: an inertia that no body can have.
+  // Arm or tool: an inertia that no body can have.
   STRATUM_CONFIG_ARM_INERTIA = 162,
+  // Arm or tool: a parameter is outside its range.
+  STRATUM_CONFIG_ARM_RANGE = 163,
 };
 
 // What limited or degraded a cycle whose torque is valid, for logs: StratumStatus has a
@@ -113,7 +119,7 @@ typedef uint32_t StratumTaskKind;
 enum {
   // The position of the point.
   STRATUM_TASK_POSITION = 0,
-  // The orientation of the link; the offset is not read.
+  // The orientation of the frame; the offset is not read.
   STRATUM_TASK_ORIENTATION = 1,
 };
 
@@ -202,30 +208,69 @@ enum {
 // sizeof(StratumStatus).
 #define STRATUM_STATUS_SIZE 56
 
+// Joints of an arm.
+#define STRATUM_JOINTS 7
+
+// Bytes of a name, its end included.
+#define STRATUM_NAME_SIZE 24
+
 // sizeof(StratumReference).
 #define STRATUM_REFERENCE_SIZE 112
 
 // The version of the interface: numbers, structs and functions of this header.
-#define STRATUM_ABI_VERSION 4
-
-// Joints of an arm.
-#define STRATUM_JOINTS 7
+#define STRATUM_ABI_VERSION 5
 
 // Most levels.
 #define STRATUM_LEVELS 7
 
+// In the place of a link: what is on the tool, or without one on the flange.
+#define STRATUM_ON_TOOL 8
+
 // sizeof(StratumSettings).
-#define STRATUM_SETTINGS_SIZE 3216
+#define STRATUM_SETTINGS_SIZE 4824
+
+// Pose of a frame in a parent frame.
+typedef struct StratumPose {
+  // Takes axes of the frame to those of the parent: its columns are the frame's axes.
+  double rotation[3][3];
+  // Origin of the frame, axes of the parent, m.
+  double shift[3];
+} StratumPose;
+
+// Friction of a joint: coulomb tanh(dq / smoothing) + viscous dq.
+typedef struct StratumFriction {
+  // Nm.
+  double coulomb;
+  // Nms/rad.
+  double viscous;
+  // Speed within which the Coulomb part changes its sign, rad/s; above 0.
+  double smoothing;
+} StratumFriction;
+
+// What a data sheet allows near the ends of the range: towards an end at most
+// -margin + sqrt(2 deceleration x the way to that end). None where the deceleration is 0.
+typedef struct StratumEndApproach {
+  // Speed that is taken off, rad/s.
+  double margin;
+  // rad/s2.
+  double deceleration;
+  // The ends, rad.
+  double ends[2];
+} StratumEndApproach;
 
 // Tables of one link and of the joint that moves it, by the standard
 // Denavit-Hartenberg convention.
 typedef struct StratumLink {
+  // The maker's name of the joint, for the caller's logs; not read.
+  char name[STRATUM_NAME_SIZE];
   // Length along the new x axis, m.
   double a;
   // Twist about the new x axis, rad.
   double alpha;
   // Offset along the joint axis, m.
   double d;
+  // Angle about the joint axis at q = 0, rad.
+  double angle_offset;
   // Mass, kg.
   double mass;
   // Centre of mass in the link's frame, m.
@@ -233,10 +278,16 @@ typedef struct StratumLink {
   // Inertia about the centre of mass, axes of the link's frame, kg m2:
   // Ixx Ixy Ixz Iyy Iyz Izz.
   double inertia[6];
-  // Largest |q|, rad.
-  double position_limit;
+  // Inertia of the rotor as the joint feels it, gear ratio squared, kg m2.
+  double rotor_inertia;
+  // Friction.
+  struct StratumFriction friction;
+  // Smallest and largest q, rad.
+  double position_range[2];
   // Largest |dq| of the data sheet, rad/s.
   double speed_limit;
+  // What the data sheet allows near the ends of the range.
+  struct StratumEndApproach end_approach;
   // Largest |torque|, Nm.
   double torque_limit;
   // Largest change of the torque while the law runs, Nm/s.
@@ -245,26 +296,43 @@ typedef struct StratumLink {
   double brake_rate_limit;
 } StratumLink;
 
-// Tables of an arm.
+// Tables of an arm and how it is mounted.
 typedef struct StratumArm {
-  // Height of frame 0 above the mounting plate, m.
-  double base_height;
-  // Distance of the flange from the origin of frame 7 along z7, m.
-  double flange;
+  // Its name, for the caller's logs; not read.
+  char name[STRATUM_NAME_SIZE];
+  // Pose of frame 0 in the base-plate frame: how the arm is mounted.
+  struct StratumPose base;
+  // Pose of the flange in frame 7.
+  struct StratumPose flange;
   // Gravitational acceleration, base-plate axes, m/s2.
   double gravity[3];
   // Links, base to flange.
   struct StratumLink links[STRATUM_JOINTS];
 } StratumArm;
 
+// A tool, gripper or load fixed to the flange. Without mass and inertia it is only a frame.
+typedef struct StratumTool {
+  // Pose of the tool frame in the flange.
+  struct StratumPose pose;
+  // Mass, kg.
+  double mass;
+  // Centre of mass in the tool frame, m.
+  double com[3];
+  // Inertia about the centre of mass, axes of the tool frame, kg m2:
+  // Ixx Ixy Ixz Iyy Iyz Izz.
+  double inertia[6];
+} StratumTool;
+
 // One priority level.
 typedef struct StratumLevel {
   // STRATUM_TASK_POSITION or STRATUM_TASK_ORIENTATION.
   StratumTaskKind task;
-  // Link that is turned or carries the point, 1 to 7.
+  // Link that is turned or carries the point, 1 to 7, or STRATUM_ON_TOOL.
   uint32_t link;
-  // The point in the link's frame, m.
+  // The point in the frame of the link or tool, m.
   double offset[3];
+  // The frame of an orientation: takes its axes to those of the link or tool.
+  double rotation[3][3];
   // Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
   StratumAxes axes;
   // Always 0: completes the struct to whole words.
@@ -281,8 +349,10 @@ typedef struct StratumSettings {
   uint32_t abi;
   // Levels in use, 1 to 7; together at most 7 axes.
   uint32_t level_count;
-  // The arm with its limits.
+  // The arm with its limits, mounted as it is.
   struct StratumArm arm;
+  // What it carries.
+  struct StratumTool tool;
   // Levels, highest priority first.
   struct StratumLevel levels[STRATUM_LEVELS];
   // Null-space stiffness, symmetric positive definite, Nm/rad.
@@ -381,13 +451,22 @@ const char *stratum_error_name(StratumResult result);
 // Text of a code or limit; never null.
 const char *stratum_error_text(StratumResult result);
 
-// Tables of a built-in arm: "lwr_iv". To start from, or to change one's limits.
+// Tables of a built-in arm, such as "lwr_iv" or "fr3"; all names are in the text of
+// STRATUM_ERROR_PRESET. To start from, or to change how it is mounted.
 StratumResult stratum_arm_preset(const char *name, struct StratumArm *arm);
 
-// Settings to start from: the LWR IV+, its flange in x, y, z as the one level (all
-// seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
+// Settings to start from: the LWR IV+ without tool, its flange in x, y, z as the one level
+// (all seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
 // STRATUM_ABI_VERSION of the header that the caller was compiled with.
-StratumResult stratum_settings_default(uint32_t abi, struct StratumSettings *settings);
+StratumResult stratum_settings_default(uint32_t abi,
+                                       struct StratumSettings *settings);
+
+// The same of a built-in arm, as in stratum_arm_preset; the damping of another arm than the
+// LWR IV+ is STRATUM_DAMPING_INERTIA. Apart from stratum_settings_default, so that a program
+// which names no arm is linked with one table.
+StratumResult stratum_settings_of_arm(uint32_t abi,
+                                      const char *name,
+                                      struct StratumSettings *settings);
 
 // Says of settings what stratum_controller_init says, and why: thing, value and
 // what is allowed, as a text of at most size - 1 characters; empty for good settings.
@@ -471,7 +550,9 @@ StratumResult stratum_coriolis(const struct StratumState *state,
 StratumResult stratum_applied(struct StratumState *state,
                               const double torque[STRATUM_JOINTS]);
 
-// The next cycle comes after a gap that is too long to be an interval.
+// The next cycle comes after a gap that is too long to be an interval, or is the first with
+// a controller of the same arm with another tool: the observer keeps its residual and takes
+// the momentum anew.
 StratumResult stratum_skip(struct StratumState *state);
 
 // The next references are followed as they are: a jump is not joined. For callers whose

@@ -5,7 +5,7 @@
 //! to an object of its type, and no other thread or interrupt handler uses this
 //! object during the call.
 
-use core::ffi::{CStr, c_char};
+use core::ffi::c_char;
 use core::fmt::{self, Write};
 use core::mem::MaybeUninit;
 use core::slice;
@@ -110,6 +110,13 @@ pub(crate) unsafe fn get<'a, T: Copy>(pointer: *const T) -> Result<&'a T, Stratu
     Ok(unsafe { &*pointer })
 }
 
+/// A result that is changed in its place. Only for what was written before.
+pub(crate) unsafe fn get_mut<'a, T: Copy>(pointer: *mut T) -> Result<&'a mut T, StratumResult> {
+    check(pointer)?;
+    // SAFETY: not null, aligned, written; the caller's contract is the rest.
+    Ok(unsafe { &mut *pointer })
+}
+
 /// An array that is read, by value: it may be the one that is written later.
 pub(crate) unsafe fn array<const N: usize>(pointer: *const f64) -> Result<[f64; N], StratumResult> {
     // SAFETY: an array of f64 is aligned as one; the caller's contract is the rest.
@@ -177,10 +184,10 @@ pub(crate) unsafe fn held_mut<'a, S: Storage>(
 }
 
 /// Whether a C string is `expected`; reads no further than the first difference.
-pub(crate) unsafe fn is_name(name: *const c_char, expected: &CStr) -> Result<bool, StratumResult> {
+pub(crate) unsafe fn is_name(name: *const c_char, expected: &str) -> Result<bool, StratumResult> {
     check(name)?;
     let name = name.cast::<u8>();
-    for (i, &byte) in expected.to_bytes_with_nul().iter().enumerate() {
+    for (i, byte) in expected.bytes().chain([0]).enumerate() {
         // SAFETY: all bytes before were equal and none of them was the end.
         if unsafe { name.add(i).read() } != byte {
             return Ok(false);

@@ -23,7 +23,10 @@ constants! { ERRORS: StratumResult {
     STRATUM_ERROR_ORIENTATION = 6, "the norm of a desired orientation is outside 0.5 to 2";
     STRATUM_ERROR_MISMATCH = 7, "state and controller differ in their number of levels";
     STRATUM_ERROR_ABI = 8, "header and library are of different versions of the interface";
-    STRATUM_ERROR_PRESET = 9, "no arm of this name is built in; there is lwr_iv";
+    STRATUM_ERROR_PRESET = 9,
+        "no arm of this name is built in; there are lwr_iv, iiwa_7, iiwa_14, panda, \
+         panda_identified, fr3, gen3, openarm_v10_left, openarm_v10_right, openarm_v20_left, \
+         openarm_v20_right";
     STRATUM_ERROR_TEXT_SIZE = 10, "the text buffer has size 0";
     STRATUM_ERROR_TARGET = 11,
         "a reference that is none: its kind does not exist, reserved is not 0, or a hold with \
@@ -51,9 +54,14 @@ constants! { CONFIG_ERRORS: StratumResult {
     STRATUM_CONFIG_INERTIA_DAMPING = 141,
         "settings: the rate of an inertia-shaped damping is not above 0 or not finite";
     STRATUM_CONFIG_DAMPING = 142, "settings: the null-space damping is too strong for the cycle";
-    STRATUM_CONFIG_ARM_NON_FINITE = 160, "arm: a parameter is not finite";
+    STRATUM_CONFIG_FRAME_ROTATION = 143,
+        "settings: the frame of a level has axes that are not orthogonal and of length 1";
+    STRATUM_CONFIG_LEVEL_LIMITS = 144, "settings: a limit of a level is outside its range";
+    STRATUM_CONFIG_POSTURE = 145, "settings: an integrated posture needs the exact law";
+    STRATUM_CONFIG_ARM_NON_FINITE = 160, "arm or tool: a parameter is not finite";
     STRATUM_CONFIG_ARM_NOT_POSITIVE = 161, "arm: a parameter that must be above 0 is not";
-    STRATUM_CONFIG_ARM_INERTIA = 162, "arm: an inertia that no body can have";
+    STRATUM_CONFIG_ARM_INERTIA = 162, "arm or tool: an inertia that no body can have";
+    STRATUM_CONFIG_ARM_RANGE = 163, "arm or tool: a parameter is outside its range";
 }}
 
 /// Faults and limits as the core numbers them.
@@ -123,6 +131,8 @@ pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
         ConfigError::Arm(ArmError::NonFinite { .. }) => STRATUM_CONFIG_ARM_NON_FINITE,
         ConfigError::Arm(ArmError::NotPositive { .. }) => STRATUM_CONFIG_ARM_NOT_POSITIVE,
         ConfigError::Arm(ArmError::ImpossibleInertia { .. }) => STRATUM_CONFIG_ARM_INERTIA,
+        ConfigError::Arm(ArmError::OutOfRange { .. }) => STRATUM_CONFIG_ARM_RANGE,
+        ConfigError::FrameRotation { .. } => STRATUM_CONFIG_FRAME_ROTATION,
         ConfigError::Levels { .. } => STRATUM_CONFIG_LEVELS,
         ConfigError::Rows { .. } => STRATUM_CONFIG_ROWS,
         ConfigError::PointOffset { .. } => STRATUM_CONFIG_POINT_OFFSET,
@@ -134,6 +144,8 @@ pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
         ConfigError::DeadCycles { .. } => STRATUM_CONFIG_DEAD_CYCLES,
         ConfigError::InertiaDamping { .. } => STRATUM_CONFIG_INERTIA_DAMPING,
         ConfigError::Damping { .. } => STRATUM_CONFIG_DAMPING,
+        ConfigError::LevelLimits { .. } => STRATUM_CONFIG_LEVEL_LIMITS,
+        ConfigError::IntegratedPosture => STRATUM_CONFIG_POSTURE,
         _ => STRATUM_CONFIG_OTHER,
     }
 }

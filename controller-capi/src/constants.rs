@@ -78,7 +78,7 @@ choices! {
     /// What a level tracks.
     TASK_KINDS: StratumTaskKind {
         STRATUM_TASK_POSITION = 0, "the position of the point";
-        STRATUM_TASK_ORIENTATION = 1, "the orientation of the link; the offset is not read";
+        STRATUM_TASK_ORIENTATION = 1, "the orientation of the frame; the offset is not read";
     }
     /// Axes that a level controls, base plate: a sum of at least one.
     AXES: StratumAxes {

@@ -16,6 +16,7 @@
 use core::ffi::{CStr, c_char};
 use core::mem::MaybeUninit;
 
+use controller_core::arm::ArmParameters;
 use controller_core::fault::Status;
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
@@ -31,9 +32,11 @@ mod storage;
 
 mod status;
 
+mod arm;
 mod reference;
 mod settings;
 
+pub use arm::*;
 pub use codes::*;
 pub use constants::*;
 pub use reference::{STRATUM_REFERENCE_SIZE, StratumReference};
@@ -85,24 +88,30 @@ pub extern "C" fn stratum_error_text(result: StratumResult) -> *const c_char {
     codes::text(result).as_ptr()
 }
 
-/// Tables of a built-in arm: "lwr_iv". To start from, or to change one's limits.
+/// The built-in arm of this name; all names are in the text of STRATUM_ERROR_PRESET.
+unsafe fn arm_of_name(name: *const c_char) -> Result<&'static ArmParameters, StratumResult> {
+    for arm in arms::ALL {
+        // SAFETY: the contract of the header.
+        if unsafe { border::is_name(name, arm.name) }? {
+            return Ok(arm);
+        }
+    }
+    Err(STRATUM_ERROR_PRESET)
+}
+
+/// Tables of a built-in arm, such as "lwr_iv" or "fr3"; all names are in the text of
+/// STRATUM_ERROR_PRESET. To start from, or to change how it is mounted.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_arm_preset(
     name: *const c_char,
     arm: *mut StratumArm,
 ) -> StratumResult {
     // SAFETY: the contract of the header.
-    code(unsafe {
-        match border::is_name(name, c"lwr_iv") {
-            Ok(true) => border::put(arm, StratumArm::lwr_iv()),
-            Ok(false) => Err(STRATUM_ERROR_PRESET),
-            Err(error) => Err(error),
-        }
-    })
+    code(unsafe { arm_of_name(name).and_then(|table| border::put(arm, StratumArm::new(table))) })
 }
 
-/// Settings to start from: the LWR IV+, its flange in x, y, z as the one level (all
-/// seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
+/// Settings to start from: the LWR IV+ without tool, its flange in x, y, z as the one level
+/// (all seven are prepared alike), compliant null space, cycle of 2 ms. `abi` is
 /// STRATUM_ABI_VERSION of the header that the caller was compiled with.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_settings_default(
@@ -113,7 +122,28 @@ pub unsafe extern "C" fn stratum_settings_default(
         return STRATUM_ERROR_ABI;
     }
     // SAFETY: the contract of the header.
-    code(unsafe { border::put(settings, StratumSettings::default()) })
+    code(unsafe { border::put(settings, StratumSettings::LWR_IV) })
+}
+
+/// The same of a built-in arm, as in stratum_arm_preset; the damping of another arm than the
+/// LWR IV+ is STRATUM_DAMPING_INERTIA. Apart from stratum_settings_default, so that a program
+/// which names no arm is linked with one table.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_settings_of_arm(
+    abi: u32,
+    name: *const c_char,
+    settings: *mut StratumSettings,
+) -> StratumResult {
+    if abi != STRATUM_ABI_VERSION {
+        return STRATUM_ERROR_ABI;
+    }
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        arm_of_name(name).and_then(|table| {
+            border::put(settings, StratumSettings::LWR_IV)?;
+            border::get_mut(settings).map(|settings| settings.set_arm(table))
+        })
+    })
 }
 
 /// Says of settings what stratum_controller_init says, and why: thing, value and
@@ -127,9 +157,11 @@ pub unsafe extern "C" fn stratum_settings_text(
     // SAFETY: the contract of the header.
     code(unsafe {
         let mut place = MaybeUninit::uninit();
-        border::get(settings).and_then(|settings| match settings.controller(&mut place) {
-            Ok(_) => border::write_text(text, size, ""),
-            Err(refusal) => border::write_text(text, size, refusal).and(Err(refusal.code())),
+        border::get(settings).and_then(|settings| {
+            match settings.controller(Controller::new, &mut place) {
+                Ok(_) => border::write_text(text, size, ""),
+                Err(refusal) => border::write_text(text, size, refusal).and(Err(refusal.code())),
+            }
         })
     })
 }
@@ -144,7 +176,23 @@ pub unsafe extern "C" fn stratum_controller_init(
     // SAFETY: the contract of the header.
     code(unsafe {
         border::fill(controller, |place| {
-            let made = border::get(settings)?.controller(place);
+            let made = border::get(settings)?.controller(Controller::new, place);
+            made.map_err(|refusal| refusal.code())
+        })
+    })
+}
+
+/// The same with the exact law, which knows nothing of singularities, ranges and speed limits.
+/// A program that never calls stratum_controller_init is linked with this law alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stratum_controller_init_exact(
+    controller: *mut StratumController,
+    settings: *const StratumSettings,
+) -> StratumResult {
+    // SAFETY: the contract of the header.
+    code(unsafe {
+        border::fill(controller, |place| {
+            let made = border::get(settings)?.controller(Controller::exact, place);
             made.map_err(|refusal| refusal.code())
         })
     })
@@ -342,6 +390,14 @@ pub unsafe extern "C" fn stratum_status(
             rank,
             rate_limited,
             joining,
+            degraded,
+            released,
+            shaped,
+            scaled,
+            at_least,
+            at_greatest,
+            unresolved,
+            pivots,
         } = held.step.status;
         let mut answer = StratumStatus {
             saturated: u32::from(saturated.0),
@@ -349,6 +405,14 @@ pub unsafe extern "C" fn stratum_status(
             torque_rate: u32::from(rate_limited.0),
             mode: u32::from(mode.number()),
             joining: u32::from(joining.0),
+            degraded: u32::from(degraded.0),
+            released: u32::from(released.0),
+            shaped: u32::from(shaped.0),
+            scaled: u32::from(scaled.0),
+            at_least: u32::from(at_least.0),
+            at_greatest: u32::from(at_greatest.0),
+            unresolved: u32::from(unresolved),
+            pivots: u32::from(pivots),
             ..StratumStatus::default()
         };
         if let Some(fault) = fault {
@@ -447,7 +511,9 @@ pub unsafe extern "C" fn stratum_applied(
     }))
 }
 
-/// The next cycle comes after a gap that is too long to be an interval.
+/// The next cycle comes after a gap that is too long to be an interval, or is the first with
+/// a controller of the same arm with another tool: the observer keeps its residual and takes
+/// the momentum anew.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stratum_skip(state: *mut StratumState) -> StratumResult {
     // SAFETY: the contract of the header.

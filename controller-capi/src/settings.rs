@@ -7,16 +7,18 @@ use core::fmt;
 use core::mem::MaybeUninit;
 
 use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS};
-use controller_core::arm::{ArmParameters, Friction, LinkParameters, Pose};
+use controller_core::arm::{ArmParameters, Pose};
 use controller_core::gain::diagonal;
 use controller_core::joint::DOF;
 use controller_core::law::null_space::{NullDamping, Posture};
 use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS};
+use controller_core::task::LevelLimits;
 use controller_core::{
-    Axes, ConfigError, Controller, ControllerConfig, Link, LinkPoint, NullSpace, Task, TaskGains,
-    TaskSet,
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkFrame, LinkPoint, NullSpace, Task,
+    TaskGains, TaskSet,
 };
 
+use crate::arm::{MakeController, STRATUM_JOINTS, StratumArm, StratumTool};
 use crate::codes::{self, StratumResult};
 use crate::constants::{
     STRATUM_AXIS_X, STRATUM_AXIS_Y, STRATUM_AXIS_Z, STRATUM_DAMPING_INERTIA, STRATUM_DAMPING_JOINT,
@@ -27,54 +29,48 @@ use crate::constants::{
 use crate::scalar::Scalar;
 
 /// The version of the interface: numbers, structs and functions of this header.
-pub const STRATUM_ABI_VERSION: u32 = 4;
-/// Joints of an arm.
-pub const STRATUM_JOINTS: usize = 7;
+pub const STRATUM_ABI_VERSION: u32 = 5;
 /// Most levels.
 pub const STRATUM_LEVELS: usize = 7;
+/// In the place of a link: what is on the tool, or without one on the flange.
+pub const STRATUM_ON_TOOL: u32 = 8;
 
-/// Tables of one link and of the joint that moves it, by the standard
-/// Denavit-Hartenberg convention.
+/// What happens to a level near singularities and far from its target; orientations count at
+/// 0.1 m from their origin. All zeros: what the place of the level calls for.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StratumLink {
-    /// Length along the new x axis, m.
-    pub a: f64,
-    /// Twist about the new x axis, rad.
-    pub alpha: f64,
-    /// Offset along the joint axis, m.
-    pub d: f64,
-    /// Mass, kg.
-    pub mass: f64,
-    /// Centre of mass in the link's frame, m.
-    pub com: [f64; 3],
-    /// Inertia about the centre of mass, axes of the link's frame, kg m2:
-    /// Ixx Ixy Ixz Iyy Iyz Izz.
-    pub inertia: [f64; 6],
-    /// Largest |q|, rad.
-    pub position_limit: f64,
-    /// Largest |dq| of the data sheet, rad/s.
-    pub speed_limit: f64,
-    /// Largest |torque|, Nm.
-    pub torque_limit: f64,
-    /// Largest change of the torque while the law runs, Nm/s.
-    pub torque_rate_limit: f64,
-    /// The same while the arm is braked after a fault, Nm/s.
-    pub brake_rate_limit: f64,
+pub struct StratumLevelLimits {
+    /// Below this mobility a direction is driven less, 1/kg.
+    pub drive_mobility: f64,
+    /// Below this mobility a direction is given to the levels below, 1/kg.
+    pub release_mobility: f64,
+    /// No error calls for more speed than this, m/s.
+    pub error_speed: f64,
+    /// No more speed is asked for along a direction that is lost, m/s.
+    pub lost_speed: f64,
+    /// Where joints are at their bounds, a direction with this mobility resists them as much
+    /// again as the arm does, 1/kg.
+    pub stiff_mobility: f64,
 }
 
-/// Tables of an arm.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StratumArm {
-    /// Height of frame 0 above the mounting plate, m.
-    pub base_height: f64,
-    /// Distance of the flange from the origin of frame 7 along z7, m.
-    pub flange: f64,
-    /// Gravitational acceleration, base-plate axes, m/s2.
-    pub gravity: [f64; 3],
-    /// Links, base to flange.
-    pub links: [StratumLink; STRATUM_JOINTS],
+impl StratumLevelLimits {
+    const BY_PLACE: Self = Self {
+        drive_mobility: 0.0,
+        release_mobility: 0.0,
+        error_speed: 0.0,
+        lost_speed: 0.0,
+        stiff_mobility: 0.0,
+    };
+
+    fn limits(&self) -> Option<LevelLimits> {
+        (*self != Self::BY_PLACE).then_some(LevelLimits {
+            drive_mobility: self.drive_mobility,
+            release_mobility: self.release_mobility,
+            error_speed: self.error_speed,
+            lost_speed: self.lost_speed,
+            stiff_mobility: self.stiff_mobility,
+        })
+    }
 }
 
 /// One priority level.
@@ -83,10 +79,12 @@ pub struct StratumArm {
 pub struct StratumLevel {
     /// STRATUM_TASK_POSITION or STRATUM_TASK_ORIENTATION.
     pub task: StratumTaskKind,
-    /// Link that is turned or carries the point, 1 to 7.
+    /// Link that is turned or carries the point, 1 to 7, or STRATUM_ON_TOOL.
     pub link: u32,
-    /// The point in the link's frame, m.
+    /// The point in the frame of the link or tool, m.
     pub offset: [f64; 3],
+    /// The frame of an orientation: takes its axes to those of the link or tool.
+    pub rotation: [[f64; 3]; 3],
     /// Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
     pub axes: StratumAxes,
     /// Always 0: completes the struct to whole words.
@@ -95,6 +93,8 @@ pub struct StratumLevel {
     pub stiffness: [[f64; 3]; 3],
     /// Damping of the error, 1/s.
     pub damping: [[f64; 3]; 3],
+    /// What happens near singularities and far from the target.
+    pub limits: StratumLevelLimits,
 }
 
 /// Everything a controller is made of.
@@ -105,8 +105,10 @@ pub struct StratumSettings {
     pub abi: u32,
     /// Levels in use, 1 to 7; together at most 7 axes.
     pub level_count: u32,
-    /// The arm with its limits.
+    /// The arm with its limits, mounted as it is.
     pub arm: StratumArm,
+    /// What it carries.
+    pub tool: StratumTool,
     /// Levels, highest priority first.
     pub levels: [StratumLevel; STRATUM_LEVELS],
     /// Null-space stiffness, symmetric positive definite, Nm/rad.
@@ -130,7 +132,7 @@ pub struct StratumSettings {
 }
 
 /// sizeof(StratumSettings).
-pub const STRATUM_SETTINGS_SIZE: usize = 3216;
+pub const STRATUM_SETTINGS_SIZE: usize = 5296;
 const _: () = assert!(size_of::<StratumSettings>() == STRATUM_SETTINGS_SIZE);
 const _: () = assert!(STRATUM_JOINTS == DOF && STRATUM_LEVELS == MAX_LEVELS);
 
@@ -194,92 +196,18 @@ impl fmt::Display for Refusal {
     }
 }
 
-impl From<&LinkParameters> for StratumLink {
-    fn from(link: &LinkParameters) -> Self {
-        Self {
-            a: link.a,
-            alpha: link.alpha,
-            d: link.d,
-            mass: link.mass,
-            com: link.com,
-            inertia: link.inertia,
-            position_limit: link.position_range[1],
-            speed_limit: link.speed_limit,
-            torque_limit: link.torque_limit,
-            torque_rate_limit: link.torque_rate_limit,
-            brake_rate_limit: link.brake_rate_limit,
-        }
-    }
-}
-
-impl StratumLink {
-    fn parameters(&self) -> LinkParameters {
-        LinkParameters {
-            name: "joint",
-            angle_offset: 0.0,
-            rotor_inertia: 0.0,
-            friction: Friction::NONE,
-            end_approach: None,
-            a: self.a,
-            alpha: self.alpha,
-            d: self.d,
-            mass: self.mass,
-            com: self.com,
-            inertia: self.inertia,
-            position_range: [-self.position_limit, self.position_limit],
-            speed_limit: self.speed_limit,
-            torque_limit: self.torque_limit,
-            torque_rate_limit: self.torque_rate_limit,
-            brake_rate_limit: self.brake_rate_limit,
-        }
-    }
-}
-
-impl StratumArm {
-    pub(crate) fn lwr_iv() -> Self {
-        Self {
-            base_height: LWR_IV.base.shift[2],
-            flange: LWR_IV.flange.shift[2],
-            gravity: LWR_IV.gravity,
-            links: LWR_IV.links.each_ref().map(StratumLink::from),
-        }
-    }
-
-    fn parameters(&self) -> ArmParameters {
-        ArmParameters {
-            name: "settings",
-            base: Pose::at([0.0, 0.0, self.base_height]),
-            flange: Pose::at([0.0, 0.0, self.flange]),
-            points: &[],
-            limits: None,
-            damping_postures: &[],
-            gravity: self.gravity,
-            links: self.links.each_ref().map(StratumLink::parameters),
-        }
-    }
-
-    #[inline(never)]
-    fn controller<'a>(
-        &self,
-        config: &ControllerConfig,
-        place: &'a mut MaybeUninit<Controller<Scalar>>,
-    ) -> Result<&'a mut Controller<Scalar>, Refusal> {
-        match Controller::new(&self.parameters(), config) {
-            Ok(controller) => Ok(place.write(controller)),
-            Err(error) => Err(Refusal::Config(error)),
-        }
-    }
-}
-
 impl StratumLevel {
-    /// The task of the level with this number. Link and axes that no task can have are
-    /// refused here: the core has no words for them.
-    fn task(&self, level: usize) -> Result<Task, Refusal> {
-        let link = usize::try_from(self.link).ok().and_then(Link::from_number);
-        let link = link.ok_or_else(|| {
-            let code = codes::STRATUM_CONFIG_POINT_LINK;
-            number(level, code, "link", self.link, [1, DOF as u32])
-        })?;
+    /// The task of the level with this number; `tool` is the pose of the tool in frame 7. Link
+    /// and axes that no task can have are refused here: the core has no words for them.
+    fn task(&self, level: usize, tool: &Pose) -> Result<Task, Refusal> {
+        let (link, parent) = match usize::try_from(self.link).ok().and_then(Link::from_number) {
+            Some(link) => (link, &Pose::IDENTITY),
+            None if self.link == STRATUM_ON_TOOL => (Link::L7, tool),
+            None => {
+                let code = codes::STRATUM_CONFIG_POINT_LINK;
+                return Err(number(level, code, "link", self.link, [1, STRATUM_ON_TOOL]));
+            }
+        };
         let axes = Axes::from_bits(self.axes).ok_or_else(|| {
             let code = match self.axes {
                 0 => codes::STRATUM_CONFIG_NO_AXIS,
@@ -291,37 +219,51 @@ impl StratumLevel {
             stiffness: self.stiffness,
             damping: self.damping,
         };
-        let offset = self.offset;
-        match self.task {
-            STRATUM_TASK_POSITION => Ok(Task::position(LinkPoint { link, offset }, axes, gains)),
-            STRATUM_TASK_ORIENTATION => Ok(Task::orientation(link, axes, gains)),
-            value => Err(number(
-                level,
-                codes::STRATUM_CONFIG_CHOICE,
-                "task",
-                value,
-                [0, 1],
-            )),
-        }
+        let offset = parent.place(self.offset);
+        let rotation = parent.turned(&self.rotation);
+        let task = match self.task {
+            STRATUM_TASK_POSITION => Task::position(LinkPoint { link, offset }, axes, gains),
+            STRATUM_TASK_ORIENTATION => {
+                Task::orientation(LinkFrame { link, rotation }, axes, gains)
+            }
+            value => {
+                let code = codes::STRATUM_CONFIG_CHOICE;
+                return Err(number(level, code, "task", value, [0, 1]));
+            }
+        };
+        Ok(Task {
+            limits: self.limits.limits(),
+            ..task
+        })
     }
 }
 
 impl Default for StratumSettings {
-    /// The LWR IV+, its flange held in x, y, z above a compliant null space, 2 ms.
+    /// Of the LWR IV+.
     fn default() -> Self {
+        Self::LWR_IV
+    }
+}
+
+impl StratumSettings {
+    /// The LWR IV+ without tool, its flange held in x, y, z above a compliant null space, 2 ms.
+    pub(crate) const LWR_IV: Self = {
         let flange = StratumLevel {
             task: STRATUM_TASK_POSITION,
-            link: 7,
-            offset: LWR_IV.flange.shift,
+            link: STRATUM_ON_TOOL,
+            offset: [0.0; 3],
+            rotation: Pose::IDENTITY.rotation,
             axes: STRATUM_AXIS_X + STRATUM_AXIS_Y + STRATUM_AXIS_Z,
             reserved: 0,
             stiffness: diagonal([400.0; 3]),
             damping: diagonal([40.0; 3]),
+            limits: StratumLevelLimits::BY_PLACE,
         };
         Self {
             abi: STRATUM_ABI_VERSION,
             level_count: 1,
-            arm: StratumArm::lwr_iv(),
+            arm: StratumArm::new(&LWR_IV),
+            tool: StratumTool::NONE,
             levels: [flange; STRATUM_LEVELS],
             null_stiffness: diagonal(LWR_IV_STIFFNESS),
             null_damping: diagonal(LWR_IV_DAMPING),
@@ -333,21 +275,34 @@ impl Default for StratumSettings {
             dead_cycles: 0,
             reserved: 0,
         }
-    }
-}
+    };
 
-impl StratumSettings {
+    /// The same with another arm. The damping matrix is for the LWR IV+; c M is for an arm of
+    /// any mass.
+    #[inline(never)]
+    pub(crate) fn set_arm(&mut self, arm: &ArmParameters) {
+        self.arm = StratumArm::new(arm);
+        if arm.name != LWR_IV.name {
+            self.damping = STRATUM_DAMPING_INERTIA;
+        }
+    }
+
     /// Makes the controller in its place. Steps that need much stack are calls of their
     /// own, so that they need it one after the other.
     pub(crate) fn controller<'a>(
         &self,
+        law: MakeController,
         place: &'a mut MaybeUninit<Controller<Scalar>>,
     ) -> Result<&'a mut Controller<Scalar>, Refusal> {
         if self.abi != STRATUM_ABI_VERSION {
             return Err(Refusal::Abi(self.abi));
         }
+        // Before the levels that are on it.
+        if let Err(error) = self.tool.validate() {
+            return Err(Refusal::Config(error.into()));
+        }
         match &self.config() {
-            Ok(config) => self.arm.controller(config, place),
+            Ok(config) => Ok(self.arm.controller(law, &self.tool, config, place)?),
             Err(refusal) => Err(*refusal),
         }
     }
@@ -380,9 +335,14 @@ impl StratumSettings {
         })
     }
 
+    /// Of the tool in frame 7.
+    fn tool_pose(&self) -> Pose {
+        self.arm.flange.pose().carrying(&self.tool.pose.pose())
+    }
+
     #[inline(never)]
     fn tasks(&self) -> Result<TaskSet, Refusal> {
-        let unused = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        let unused = Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let mut tasks = [unused; STRATUM_LEVELS];
         let count = usize::try_from(self.level_count).unwrap_or(usize::MAX);
         let used = tasks.get_mut(..count).filter(|used| !used.is_empty());
@@ -391,7 +351,7 @@ impl StratumSettings {
             number(0, code, "level_count", self.level_count, allowed)
         })?;
         for (number, (task, level)) in (1..).zip(used.iter_mut().zip(&self.levels)) {
-            *task = level.task(number)?;
+            *task = level.task(number, &self.tool_pose())?;
         }
         Ok(TaskSet::new(used)?)
     }

@@ -32,8 +32,24 @@ pub struct StratumStatus {
     /// STRATUM_LIMIT_JOINING: levels on their way to a reference that jumped, bit 0 is
     /// level 1; bit 7 is the posture.
     pub joining: u32,
+    /// STRATUM_LIMIT_DEGRADED: levels, bit 0 is level 1.
+    pub degraded: u32,
+    /// STRATUM_LIMIT_RELEASED: levels.
+    pub released: u32,
+    /// STRATUM_LIMIT_SHAPED: levels.
+    pub shaped: u32,
+    /// STRATUM_LIMIT_SCALED: levels; bit 7 is the null space.
+    pub scaled: u32,
+    /// STRATUM_LIMIT_BOUNDED: joints that may not go further down, bit 0 is joint 1.
+    pub at_least: u32,
+    /// STRATUM_LIMIT_BOUNDED: joints that may not go further up.
+    pub at_greatest: u32,
+    /// STRATUM_LIMIT_UNRESOLVED: 1 where it is so.
+    pub unresolved: u32,
+    /// Exchanges that the projection onto the bounds of the joints took, 0 to 12.
+    pub pivots: u32,
 }
 
 /// sizeof(StratumStatus).
-pub const STRATUM_STATUS_SIZE: usize = 56;
+pub const STRATUM_STATUS_SIZE: usize = 88;
 const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);

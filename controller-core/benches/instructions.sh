@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Instructions of a control cycle on the host, counted by callgrind: whole cycles in
-# 2,000 random and 240 adversarial states, cycles in which the references of all levels and the
-# posture jump ("joining") in 16, then each stage alone in 16, then cycles of the
-# velocity-level resolver in the former. Compares the largest counts with
+# 2,000 random and 240 adversarial states, those of the FR3 in a tenth of them, cycles in which
+# the references of all levels and the posture jump ("joining") in 16, then each stage alone in
+# 16, then cycles of the velocity-level resolver in the former. Compares the largest counts with
 # instructions.txt beside this script; --update rewrites that file.
 #
-#   controller-core/benches/instructions.sh [--update|--quick]
+#   controller-core/benches/instructions.sh [--update|--quick|--arms]
 #
-# --quick takes 20 states and compares nothing. Valgrind 3.19 does not know one
+# --quick takes 20 states and compares nothing; --arms shows the cycles of every arm of the
+# crate arms in 23. Valgrind 3.19 does not know one
 # encoding of vmovq between registers (C5 79 D6); should the compiler come to use it,
 # the run ends with an illegal instruction, and a newer Valgrind is needed.
 #
@@ -15,6 +16,7 @@
 # may move them. It fails where
 # - a cycle or a stage is more than 2 % above the committed figure,
 # - a cycle is above its limit below, whatever is committed,
+# - a cycle of the FR3, whose links have lengths a, is more than 4 % above that of the LWR,
 # - the counts of a cycle differ by 0.5 % or more between the states.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -22,7 +24,7 @@ cd "$(dirname "$0")/../.."
 # Most instructions of a cycle, by case.
 limit() {
   case "$1" in
-    2-levels-*) echo 10000 ;;
+    *2-levels-*) echo 10000 ;;
     *) echo 12000 ;;
   esac
 }
@@ -53,11 +55,14 @@ count() {
   paste -d' ' "$work/names" "$work/counts"
   rm "$work/out"
 }
-{
-  count "$([ "$mode" = --quick ] && echo quick || echo step)" step
-  count stages stage
-  count resolver resolve
-} > "$work/all"
+case "$mode" in
+  --arms) count arms step ;;
+  *)
+    count "$([ "$mode" = --quick ] && echo quick || echo step)" step
+    count stages stage
+    count resolver resolve
+    ;;
+esac > "$work/all"
 
 awk '
   # A fault is another path, and none of the inputs should be one.
@@ -78,8 +83,9 @@ awk '
     if (faults) print "faults", faults, faults, faults
   }' "$work/all" > "$work/table"
 
-printf '%-14s %-26s %8s %8s %8s %7s\n' cycle stage max min 'spread %' inputs
+printf '%-30s %-15s %8s %8s %8s %7s\n' cycle stage max min 'spread %' inputs
 failed=0
+declare -A lwr
 fails() { echo "  $*"; failed=1; }
 while read -r case stage max min count; do
   if [ "$case" = faults ]; then
@@ -87,7 +93,7 @@ while read -r case stage max min count; do
     continue
   fi
   spread=$(awk "BEGIN { printf \"%.2f\", 100 * ($max - $min) / $min }")
-  printf '%-14s %-26s %8d %8d %8s %7d\n' "$case" "$stage" "$max" "$min" "$spread" "$count"
+  printf '%-30s %-15s %8d %8d %8s %7d\n' "$case" "$stage" "$max" "$min" "$spread" "$count"
   if [ "$stage" = step ] || [ "$stage" = resolver ]; then
     if awk "BEGIN { exit !($spread >= 0.5) }"; then
       fails "$case $stage: spread $spread %, must be below 0.5 %: the count depends on the data"
@@ -95,6 +101,13 @@ while read -r case stage max min count; do
   fi
   if [ "$stage" = step ] && [ "$max" -gt "$(limit "$case")" ]; then
     fails "$case step: $max instructions, limit $(limit "$case")"
+  fi
+  if [ "$stage" = step ]; then
+    levels=${case#"${case%%[23]-levels-*}"}
+    [ "$case" != "$levels" ] || lwr[$levels]=$max
+    if [[ $case = fr3-* ]] && [ $((100 * max)) -gt $((104 * lwr[$levels])) ]; then
+      fails "$case step: $max instructions, LWR ${lwr[$levels]}; allowed +4 %"
+    fi
   fi
   [ -z "$mode" ] || continue
   before=$(awk -v case="$case" -v stage="$stage" '$1 == case && $2 == stage { print $3 }' "$committed")

@@ -7,6 +7,7 @@ mod cases;
 use std::hint::black_box;
 use std::time::Duration;
 
+use arms::LWR_IV;
 use cases::stages::{resolve, stage, step};
 use cases::{Case, levels, states};
 use controller_core::cycle::record::Recorder;
@@ -19,7 +20,7 @@ use criterion::Criterion;
 /// Whole cycles, over the random states in turn: denormal numbers, which the others
 /// contain, take a PC much longer.
 fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
-    let states = states();
+    let states = states(&LWR_IV);
     let random = states.iter().filter(|input| input.kind == "random");
     let inputs: Vec<_> = random.map(|input| case.typed(input)).collect();
     let mut next = inputs.iter().cycle();
@@ -46,7 +47,7 @@ fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
 
 /// The velocity-level resolver on its own.
 fn resolver<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
-    let (measurement, reference) = case.typed(&states()[0]);
+    let (measurement, reference) = case.typed(&states(&LWR_IV)[0]);
     let mut state = ResolverState::new(measurement.q);
     criterion.bench_function(&format!("{} resolver", case.name), |bencher| {
         bencher.iter(|| {
@@ -63,7 +64,7 @@ fn resolver<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
 
 /// Every stage alone, in one state: its work does not depend on the data.
 fn stages<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
-    let (measurement, reference) = case.typed(&states()[0]);
+    let (measurement, reference) = case.typed(&states(&LWR_IV)[0]);
     let input = Input {
         measurement: &measurement,
         reference: &reference,

@@ -2,8 +2,10 @@
 //! under callgrind, which counts each call of a function in `cases::stages` by itself.
 //!
 //! `count_step step` runs whole cycles in random and adversarial states (`quick`: a
-//! few) and cycles in which every reference jumps, `count_step stages` every stage alone, `count_step resolver` the velocity-level
-//! resolver in the states of `step`. The order of the calls is printed, one name per line.
+//! few), the same of the FR3 in a tenth of them, and cycles in which every reference jumps;
+//! `count_step arms` a few cycles of every arm, `count_step stages` every stage alone,
+//! `count_step resolver` the velocity-level resolver in the states of `step`. The order of the
+//! calls is printed, one name per line.
 
 #![cfg(not(target_os = "none"))]
 
@@ -12,8 +14,10 @@ mod cases;
 
 use std::hint::black_box;
 
+use arms::{FR3, LWR_IV};
 use cases::stages::{resolve, stage, step};
-use cases::{Case, Input, levels, states};
+use cases::{Case, Input, levels, levels_of, states};
+use controller_core::arm::ArmParameters;
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::{self, Data};
 use controller_core::real::Real;
@@ -117,30 +121,38 @@ fn resolutions<T: Real>(case: &Case<T>, inputs: &[Input]) {
     }
 }
 
+/// Whole cycles of an arm with two and three levels in both precisions, in every `nth` state.
+fn steps_of(arm: &ArmParameters, nth: usize) {
+    let inputs: Vec<_> = states(arm).into_iter().step_by(nth).collect();
+    steps(&levels_of::<f64>(arm, 2), &inputs);
+    steps(&levels_of::<f64>(arm, 3), &inputs);
+    steps(&levels_of::<f32>(arm, 2), &inputs);
+    steps(&levels_of::<f32>(arm, 3), &inputs);
+}
+
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
     if wanted == "stages" {
-        let inputs = &states()[..16];
+        let inputs = &states(&LWR_IV)[..16];
         stages(&levels::<f64>(2), inputs);
         stages(&levels::<f64>(3), inputs);
         stages(&levels::<f32>(2), inputs);
         stages(&levels::<f32>(3), inputs);
     } else if wanted == "resolver" {
-        let inputs = states();
+        let inputs = states(&LWR_IV);
         resolutions(&levels::<f64>(2), &inputs);
         resolutions(&levels::<f64>(3), &inputs);
         resolutions(&levels::<f32>(2), &inputs);
         resolutions(&levels::<f32>(3), &inputs);
-    } else {
-        let mut inputs = states();
-        if wanted == "quick" {
-            inputs.truncate(20);
+    } else if wanted == "arms" {
+        for arm in arms::ALL {
+            steps_of(arm, 100);
         }
-        steps(&levels::<f64>(2), &inputs);
-        steps(&levels::<f64>(3), &inputs);
-        steps(&levels::<f32>(2), &inputs);
-        steps(&levels::<f32>(3), &inputs);
-        let some = &inputs[..16];
+    } else {
+        let quick = wanted == "quick";
+        steps_of(&LWR_IV, if quick { 100 } else { 1 });
+        steps_of(&FR3, if quick { 100 } else { 10 });
+        let some = &states(&LWR_IV)[..16];
         joins(&levels::<f64>(2), some);
         joins(&levels::<f64>(3), some);
         joins(&levels::<f32>(2), some);

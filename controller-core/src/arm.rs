@@ -23,9 +23,10 @@ mod transform;
 
 pub use check::ArmError;
 pub use limits::JointLimits;
-pub use link::{Link, LinkPoint, NamedPoint};
+pub use link::{Link, LinkFrame, LinkPoint, NamedPoint};
 pub use model::ArmModel;
 pub(crate) use model::LinkModel;
 pub use parameters::{ArmParameters, EndApproach, Friction, LinkParameters};
 pub use pose::Pose;
+pub(crate) use pose::distortion;
 pub use tool::Tool;

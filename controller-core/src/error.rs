@@ -2,11 +2,12 @@
 
 use core::fmt;
 
-use crate::arm::ArmError;
+use crate::arm::{ArmError, ArmParameters};
+use crate::fault::{JointLabel, Named, NamesJoints};
 use crate::joint::DOF;
 use crate::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GAIN_MAX, LEVEL_SPEED_RANGE, MAX_LEVELS, MAX_ROWS,
-    MOBILITY_RANGE, POINT_OFFSET_MAX_M,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, DISTORTION_MAX, GAIN_MAX, LEVEL_SPEED_RANGE, MAX_LEVELS,
+    MAX_ROWS, MOBILITY_RANGE, POINT_OFFSET_MAX_M,
 };
 use crate::real::Real;
 
@@ -97,6 +98,13 @@ pub enum ConfigError {
         /// Its level.
         level: usize,
         /// The coordinate \[m\].
+        value: f64,
+    },
+    /// A task frame whose axes are not orthogonal and of length 1, or a mirror image.
+    FrameRotation {
+        /// Its level.
+        level: usize,
+        /// Largest entry of R^T R - 1, more than 1 for a mirror image.
         value: f64,
     },
     /// An entry of a gain matrix is not finite, or beyond [`GAIN_MAX`].
@@ -203,8 +211,17 @@ pub enum ConfigError {
     },
 }
 
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl ConfigError {
+    /// The same as text that calls joints by the names that their maker gave them.
+    #[must_use]
+    pub fn named<'a>(&'a self, arm: &'a ArmParameters) -> impl fmt::Display + 'a {
+        Named { of: self, arm }
+    }
+}
+
+impl NamesJoints for ConfigError {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result {
+        let label = |number| JointLabel { number, arm };
         let place = |f: &mut fmt::Formatter<'_>, gain: Gain, level: usize| {
             if level > 0 {
                 write!(f, "level {level}: ")?;
@@ -212,7 +229,7 @@ impl fmt::Display for ConfigError {
             write!(f, "{}", gain.name())
         };
         match *self {
-            Self::Arm(error) => error.fmt(f),
+            Self::Arm(error) => write!(f, "{error}"),
             Self::Levels { levels } => {
                 write!(f, "there are {levels} tasks; allowed 1 to {MAX_LEVELS}")
             }
@@ -226,6 +243,11 @@ impl fmt::Display for ConfigError {
                 f,
                 "level {level}: point offset {value} m; allowed -{POINT_OFFSET_MAX_M} to \
                  {POINT_OFFSET_MAX_M}"
+            ),
+            Self::FrameRotation { level, value } => write!(
+                f,
+                "level {level}: rotation of the frame is distorted by {value:e}; allowed 0 to \
+                 {DISTORTION_MAX:e}"
             ),
             Self::GainValue { gain, level, value } => {
                 place(f, gain, level)?;
@@ -274,8 +296,8 @@ impl fmt::Display for ConfigError {
                 bound,
             } => write!(
                 f,
-                "observer gain of joint {joint} is {value} 1/s; it must be above 0 and at most \
-                 {bound:.1}"
+                "observer gain of {} is {value} 1/s; it must be above 0 and at most {bound:.1}",
+                label(joint)
             ),
             Self::ResolverGain { value, bound } => write!(
                 f,
@@ -318,8 +340,9 @@ impl fmt::Display for ConfigError {
             } => {
                 write!(
                     f,
-                    "null-space damping of joint {joint} is too strong for the cycle: \
-                     h lambda_max = {value:.3} at the posture"
+                    "null-space damping of {} is too strong for the cycle: \
+                     h lambda_max = {value:.3} at the posture",
+                    label(joint)
                 )?;
                 for q in posture {
                     write!(f, " {}", (q.to_degrees() + 0.5).floor_small() as i32)?;
@@ -327,6 +350,12 @@ impl fmt::Display for ConfigError {
                 write!(f, " deg; it must be below {bound:.3}")
             }
         }
+    }
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, None)
     }
 }
 

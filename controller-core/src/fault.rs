@@ -9,6 +9,7 @@
 
 use core::fmt;
 
+use crate::arm::ArmParameters;
 use crate::real::Real;
 
 /// Calls `$define!` with every fault (32 to 95) and every limit (96 to 159):
@@ -181,23 +182,38 @@ pub const POSITION_CODE: f64 = 1.0;
 /// An orientation, as value of [`Quantity::TargetKind`].
 pub const ORIENTATION_CODE: f64 = 2.0;
 
+/// What the index of a fault counts.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Joint,
+    Level,
+    /// There is only one.
+    Whole,
+}
+
 impl Quantity {
-    fn name(self) -> &'static str {
+    /// With its unit, and what it is of.
+    fn name(self) -> (&'static str, Place) {
         match self {
-            Self::Position => "position [rad] of joint",
-            Self::Speed => "speed [rad/s] of joint",
-            Self::Interval => "measured interval [s]",
-            Self::TargetDistance => "distance [m] from the shoulder of the target of level",
-            Self::TargetSpeed => "desired speed [m/s] of level",
-            Self::TargetAcceleration => "desired acceleration [m/s2] of level",
-            Self::TargetAngularSpeed => "desired angular speed [rad/s] of level",
-            Self::TargetAngularAcceleration => "desired angular acceleration [rad/s2] of level",
-            Self::Orientation => "squared quaternion norm of level",
-            Self::TargetKind => "kind of target of level",
-            Self::PostureReference => "desired posture [rad] of joint",
-            Self::TargetCount => "number of targets",
-            Self::Torque => "demanded torque [Nm] of joint",
-            Self::SpeedCommand => "demanded speed [rad/s] of joint",
+            Self::Position => ("position [rad] of", Place::Joint),
+            Self::Speed => ("speed [rad/s] of", Place::Joint),
+            Self::Interval => ("measured interval [s]", Place::Whole),
+            Self::TargetDistance => (
+                "distance [m] from the shoulder of the target of",
+                Place::Level,
+            ),
+            Self::TargetSpeed => ("desired speed [m/s] of", Place::Level),
+            Self::TargetAcceleration => ("desired acceleration [m/s2] of", Place::Level),
+            Self::TargetAngularSpeed => ("desired angular speed [rad/s] of", Place::Level),
+            Self::TargetAngularAcceleration => {
+                ("desired angular acceleration [rad/s2] of", Place::Level)
+            }
+            Self::Orientation => ("squared quaternion norm of", Place::Level),
+            Self::TargetKind => ("kind of target of", Place::Level),
+            Self::PostureReference => ("desired posture [rad] of", Place::Joint),
+            Self::TargetCount => ("number of targets", Place::Whole),
+            Self::Torque => ("demanded torque [Nm] of", Place::Joint),
+            Self::SpeedCommand => ("demanded speed [rad/s] of", Place::Joint),
         }
     }
 }
@@ -220,11 +236,57 @@ pub struct Fault {
     pub max: f64,
 }
 
-impl fmt::Display for Fault {
+/// A joint in a text: by the name that its maker gave it, without an arm by its number.
+pub(crate) struct JointLabel<'a> {
+    /// Counted from 1.
+    pub number: usize,
+    pub arm: Option<&'a ArmParameters>,
+}
+
+impl fmt::Display for JointLabel<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.kind.name(), self.quantity.name())?;
-        if self.index > 0 {
-            write!(f, " {}", self.index)?;
+        let link = self.number.wrapping_sub(1);
+        match self.arm.and_then(|arm| arm.links.get(link)) {
+            Some(link) => f.write_str(link.name),
+            None => write!(f, "joint {}", self.number),
+        }
+    }
+}
+
+/// What is text with or without the names of an arm's joints.
+pub(crate) trait NamesJoints {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result;
+}
+
+/// The text with them.
+pub(crate) struct Named<'a, T> {
+    pub of: &'a T,
+    pub arm: &'a ArmParameters,
+}
+
+impl<T: NamesJoints> fmt::Display for Named<'_, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.of.write(f, Some(self.arm))
+    }
+}
+
+impl Fault {
+    /// The same as text that calls joints by the names that their maker gave them.
+    #[must_use]
+    pub fn named<'a>(&'a self, arm: &'a ArmParameters) -> impl fmt::Display + 'a {
+        Named { of: self, arm }
+    }
+}
+
+impl NamesJoints for Fault {
+    fn write(&self, f: &mut fmt::Formatter<'_>, arm: Option<&ArmParameters>) -> fmt::Result {
+        let (name, place) = self.quantity.name();
+        write!(f, "{}: {name}", self.kind.name())?;
+        let number = self.index.into();
+        match place {
+            Place::Joint => write!(f, " {}", JointLabel { number, arm })?,
+            Place::Level => write!(f, " level {number}")?,
+            Place::Whole => (),
         }
         if self.quantity == Quantity::TargetKind {
             let word = |code: f64| {
@@ -247,6 +309,12 @@ impl fmt::Display for Fault {
         } else {
             write!(f, "allowed {} to {}", self.min, self.max)
         }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write(f, None)
     }
 }
 

@@ -91,7 +91,7 @@ pub mod task;
 
 pub use nalgebra;
 
-pub use arm::{Link, LinkPoint};
+pub use arm::{Link, LinkFrame, LinkPoint};
 pub use cycle::config::ControllerConfig;
 pub use cycle::measurement::Measurement;
 pub use cycle::{Controller, State, Step};

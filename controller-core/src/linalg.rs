@@ -169,14 +169,13 @@ impl<T: Real> Cholesky<T> {
         let mut whole = *b;
         // (L^-1 B)^T = B L^-T, and once more the same.
         for _ in 0..2 {
-            let mut next = zeros();
             for j in 0..DOF {
                 let solved = self.solve_lower(&whole.column(j).into_owned());
                 for i in 0..DOF {
-                    next[(j, i)] = solved[i];
+                    whole[(i, j)] = solved[i];
                 }
             }
-            whole = next;
+            whole.transpose_mut();
         }
         whole
     }
@@ -188,18 +187,17 @@ impl<T: Real> Default for Cholesky<T> {
     }
 }
 
-/// Largest eigenvalue of a symmetric matrix and its eigenvector, by cyclic
-/// Jacobi rotations: twelve sweeps, which for 7 x 7 is far beyond the point
+/// Largest eigenvalue of a symmetric matrix, which becomes diagonal, and its eigenvector, by
+/// cyclic Jacobi rotations: twelve sweeps, which for 7 x 7 is far beyond the point
 /// where nothing changes any more. For construction, not for the cycle.
 #[must_use]
-pub fn largest_eigenpair<T: Real>(symmetric: &JointMatrix<T>) -> (T, JointVector<T>) {
+pub fn largest_eigenpair<T: Real>(a: &mut JointMatrix<T>) -> (T, JointVector<T>) {
     const SWEEPS: usize = 12;
-    let mut a = *symmetric;
     let mut vectors = JointMatrix::<T>::identity();
     for _ in 0..SWEEPS {
         for p in 0..DOF {
             for q in p + 1..DOF {
-                rotate(&mut a, &mut vectors, p, q);
+                rotate(a, &mut vectors, p, q);
             }
         }
     }

@@ -21,6 +21,10 @@ pub const GAIN_MAX: f64 = 1e9;
 /// Farthest point of a task from its link's frame \[m\].
 pub const POINT_OFFSET_MAX_M: f64 = 10.0;
 
+/// Largest entry of R^T R - 1 of a rotation: those printed with ten digits pass, those with
+/// five do not.
+pub const DISTORTION_MAX: f64 = 1e-9;
+
 /// Largest h c of an inertia-shaped damping D = c M.
 pub const INERTIA_DAMPING_BOUND: f64 = 0.5;
 

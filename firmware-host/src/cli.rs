@@ -70,7 +70,7 @@ enum Command {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 struct RunOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file, which says arm, mount and tool
     #[arg(long, default_value = "two-level")]
     scenario: String,
     /// Address and port to which the robot sends
@@ -347,7 +347,7 @@ impl RunOptions {
         config.dry = self.dry;
         // What the robot's cycle will be is not known yet; all else is checked now.
         Controller::<f64>::new(&config.arm, &config.controller)
-            .map_err(|error| Invalid::line(error).within(&scenario.name))?;
+            .map_err(|error| Invalid::line(error.named(&config.arm)).within(&scenario.name))?;
         Ok(config)
     }
 
@@ -356,12 +356,18 @@ impl RunOptions {
         let Some(address) = self.references else {
             return Ok(Source::Scenario(ScenarioSource::new(scenario)));
         };
-        Stream::listen(address, self.references_from, tasks, timeout)
-            .map(Source::Stream)
-            .map_err(|error| {
-                let allowed = format!("an address of this PC and a free port ({error})");
-                Invalid::new("--references", address, allowed)
-            })
+        Stream::listen(
+            address,
+            self.references_from,
+            tasks,
+            &scenario.arm(),
+            timeout,
+        )
+        .map(Source::Stream)
+        .map_err(|error| {
+            let allowed = format!("an address of this PC and a free port ({error})");
+            Invalid::new("--references", address, allowed)
+        })
     }
 
     /// The scenario's start posture and how far the arm may be from it \[rad\].

@@ -30,6 +30,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
 use bridge::source::ReferenceSource;
+use cell::scenario::EquippedArm;
 use cell::terminal::tell;
 use controller_core::joint::DOF;
 use controller_core::{Reference, TaskSet};
@@ -95,7 +96,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Listens at `address` for references of levels that have these `tasks`, from the
+    /// Listens at `address` for references of levels of `arm` that have these `tasks`, from the
     /// address `from` alone or, without one, from the first that sends one; after
     /// `timeout` without one the arm is held.
     ///
@@ -105,18 +106,19 @@ impl Stream {
         address: SocketAddr,
         from: Option<SocketAddr>,
         tasks: &TaskSet,
+        arm: &EquippedArm,
         timeout: Duration,
     ) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         let (sender, queue) = sync_channel(QUEUE);
         let stream = Self::from_channel(queue, timeout);
-        let (tally, tasks) = (Arc::clone(&stream.tally), *tasks);
+        let (tally, tasks, arm) = (Arc::clone(&stream.tally), *tasks, arm.clone());
         if let Some(from) = from {
             tally.sender.get_or_init(|| from);
         }
         std::thread::Builder::new()
             .name("references".into())
-            .spawn(move || receive(&socket, &tasks, &sender, &tally))?;
+            .spawn(move || receive(&socket, (&tasks, &arm), &sender, &tally))?;
         Ok(stream)
     }
 
@@ -184,7 +186,12 @@ impl ReferenceSource for Stream {
     }
 }
 
-fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, tally: &Tally) {
+fn receive(
+    socket: &UdpSocket,
+    (tasks, arm): (&TaskSet, &EquippedArm),
+    queue: &SyncSender<Setpoint>,
+    tally: &Tally,
+) {
     let mut bytes = vec![0; LONGEST];
     let count = |counter: &AtomicU64| counter.fetch_add(1, Ordering::Relaxed);
     // Once of a kind: a stream that is wrong is wrong a thousand times a second.
@@ -207,7 +214,7 @@ fn receive(socket: &UdpSocket, tasks: &TaskSet, queue: &SyncSender<Setpoint>, ta
             .and_then(|bytes| std::str::from_utf8(bytes).ok());
         let setpoint = text
             .ok_or_else(|| "not text".to_string())
-            .and_then(|text| Setpoint::parse(text, tasks));
+            .and_then(|text| Setpoint::parse(text, tasks, arm));
         match setpoint {
             Ok(setpoint) => {
                 tally.sender.get_or_init(|| from);
@@ -241,12 +248,13 @@ mod tests {
 
     #[test]
     fn the_newest_counts_and_silence_holds() {
+        let arm = EquippedArm::of(&arms::LWR_IV);
         let (sender, queue) = sync_channel(8);
         let mut stream = Stream::from_channel(queue, Duration::from_millis(50));
         stream.start(&origin());
         let send = |x: &str| {
             let text = format!("{x} {} 0 0 0 -2 0 0 3 0 0 0", "0 ".repeat(8));
-            let setpoint = Setpoint::parse(&text, &three()).expect("good");
+            let setpoint = Setpoint::parse(&text, &three(), &arm).expect("good");
             sender.send(setpoint).expect("room");
         };
         send("0.3");

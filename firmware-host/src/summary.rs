@@ -172,7 +172,8 @@ pub fn ending(session: &Session) -> (u8, String) {
         (Some(StopReason::Asked), _) => (0, "stopped by request".into()),
         (Some(StopReason::Link), _) => (3, "the link was lost".into()),
         (Some(StopReason::Fault), _) => {
-            let fault = session.fault().map(|fault| fault.to_string());
+            let fault = session.fault();
+            let fault = fault.map(|fault| fault.named(session.arm()).to_string());
             (3, fault.unwrap_or_else(|| "fault".into()))
         }
         (None, Phase::Ready) => match session.last().and_then(|cycle| Obstacle::of(&cycle.robot)) {

@@ -11,7 +11,7 @@ use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
 use bridge::source::ReferenceSource;
 use cell::names::PlantKind;
 use cell::realtime::Realtime;
-use cell::scenario::{ReferenceSpec, Scenario, TaskSpec};
+use cell::scenario::{EquippedArm, ReferenceSpec, Scenario, TaskSpec};
 use controller_core::fault::FaultKind;
 use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
@@ -103,6 +103,7 @@ struct Planner {
     stream: Stream,
     sender: SyncSender<Setpoint>,
     tasks: TaskSet,
+    arm: EquippedArm,
     origin: Reference<f64>,
 }
 
@@ -114,6 +115,7 @@ impl Planner {
             stream: Stream::from_channel(queue, NEVER),
             sender,
             tasks,
+            arm: scenario.arm(),
             origin: Reference::hold(2, [0.0; 7]),
         }
     }
@@ -146,7 +148,7 @@ impl ReferenceSource for Planner {
         // A quaternion need not be of norm 1.
         let parts = [x.as_slice(), &[0.0; 6], (q * -1.5).as_slice()].concat();
         let text = words(&[&parts, w.as_slice(), dw.as_slice()].concat());
-        let setpoint = Setpoint::parse(&text, &self.tasks).expect("two levels");
+        let setpoint = Setpoint::parse(&text, &self.tasks, &self.arm).expect("two levels");
         self.sender.send(setpoint).expect("room for one");
         self.stream.sample(t_s)
     }
@@ -207,7 +209,7 @@ impl Early {
         let Self(planner) = self;
         let place = place(&planner.origin) + Vector3::from([0.0, AWAY_M, 0.0]);
         let text = words(place.as_slice()) + &" 0".repeat(6);
-        let setpoint = Setpoint::parse(&text, &planner.tasks).expect("one level");
+        let setpoint = Setpoint::parse(&text, &planner.tasks, &planner.arm).expect("one level");
         planner.sender.send(setpoint).expect("room for one");
     }
 }
@@ -261,7 +263,8 @@ fn a_stream_of_nine_numbers_per_level_is_not_followed() {
         let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
         free.local_addr().expect("an address")
     };
-    let mut stream = Stream::listen(address, None, &tasks(&scenario), NEVER).expect("a free port");
+    let mut stream = Stream::listen(address, None, &tasks(&scenario), &scenario.arm(), NEVER)
+        .expect("a free port");
     let planner = UdpSocket::bind("127.0.0.1:0").expect("a port");
     planner.connect(address).expect("loopback");
     let wrong = "-0.5 0 0.5 0 0 0 0 0 0 ".repeat(2);

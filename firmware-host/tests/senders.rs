@@ -4,8 +4,9 @@ use std::net::UdpSocket;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use arms::LWR_IV_FLANGE;
+use arms::{LWR_IV, LWR_IV_FLANGE};
 use bridge::source::ReferenceSource;
+use cell::scenario::EquippedArm;
 use controller_core::{Axes, Reference, Target, Task, TaskGains, TaskSet};
 use firmware_host::stream::Stream;
 
@@ -17,6 +18,7 @@ const NEVER: Duration = Duration::from_secs(600);
 fn one_sender_is_obeyed_and_the_others_are_counted() {
     let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
     let tasks = TaskSet::new(&[flange]).expect("one task");
+    let arm = EquippedArm::of(&LWR_IV);
     let planners = [0, 1].map(|_| UdpSocket::bind("127.0.0.1:0").expect("a port"));
     for (named, obeyed) in [(None, 0), (Some(1), 1)] {
         let address = {
@@ -25,7 +27,7 @@ fn one_sender_is_obeyed_and_the_others_are_counted() {
         };
         let local = |index: usize| planners[index].local_addr().expect("an address");
         let mut stream =
-            Stream::listen(address, named.map(local), &tasks, NEVER).expect("a free port");
+            Stream::listen(address, named.map(local), &tasks, &arm, NEVER).expect("a free port");
         stream.start(&Reference::hold(1, [0.0; 7]));
         assert!(stream.sample(0.0).is_none(), "the motion begins");
         let deadline = Instant::now() + Duration::from_secs(20);

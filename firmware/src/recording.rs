@@ -30,7 +30,7 @@ pub fn write_run<T: Number>(
     let mut contacts = Contacts::of(&built_in);
     let mut plant = Plant::with_options(
         PlantKind::Realistic,
-        built_in.arm(),
+        &built_in.arm().parameters,
         built_in.start(),
         CYCLE_S,
         SEED,

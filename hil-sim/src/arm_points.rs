@@ -1,58 +1,87 @@
-//! Where points and links of the arm are in a posture, by the plant's own geometry.
+//! Where points and links of the arm are in a posture, by the plant's own geometry. Mismatched
+//! plants have the same.
 
-use arms::LWR_IV;
-use cell::scenario::{LevelSpec, Scenario, TaskSpec};
-use controller_core::Target;
-use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
-use controller_core::real::Real;
+use cell::scenario::{EquippedArm, LevelSpec, Scenario, TOOL_POINT, TaskSpec};
+use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
+use controller_core::{LinkFrame, LinkPoint, Target};
 
 use crate::plant::PlantModel;
 use controller_core::task::orientation::{self, Quaternion};
 
-/// Orientation of the DH frame of `link` (1..=7) in a posture \[rad\], base-plate
-/// frame. Mismatched plants have the same geometry.
+/// Corners of the drawn arm closer than this are one \[m\].
+const CORNER: f64 = 1e-9;
+
+/// Orientation of a frame of the arm in a posture \[rad\], base-plate frame.
 #[must_use]
-pub fn orientation(q: &JointVector<f64>, link: usize) -> Quaternion<f64> {
-    let mut rotation = Matrix3::identity();
-    for (angle, link) in q.iter().zip(&LWR_IV.links).take(link) {
-        let (sin, cos) = angle.sine_cosine();
-        let (sin_twist, cos_twist) = link.alpha.sine_cosine();
-        let turn = Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
-        let twist = Matrix3::new(
-            1.0, 0.0, 0.0, 0.0, cos_twist, -sin_twist, 0.0, sin_twist, cos_twist,
-        );
-        rotation = rotation * turn * twist;
-    }
-    orientation::of_rotation(&rotation)
+pub fn orientation(plant: &PlantModel, q: &JointVector<f64>, frame: &LinkFrame) -> Quaternion<f64> {
+    // nalgebra takes columns.
+    let turn = Matrix3::from(frame.rotation).transpose();
+    orientation::of_rotation(&(plant.orientation(q, frame.link.number()) * turn))
 }
 
 /// At rest where the levels of a scenario are in the posture `q` \[rad\], base-plate
 /// frame.
 #[must_use]
 pub fn origins(scenario: &Scenario, q: &JointVector<f64>) -> Vec<Target<f64>> {
-    scenario
-        .levels
-        .iter()
-        .map(|level| rest_at(level, q))
+    let arm = scenario.arm();
+    let plant = PlantModel::new(&arm.parameters);
+    let levels = scenario.levels.iter();
+    levels
+        .map(|level| rest_at(level, &arm, &plant, q))
         .collect()
 }
 
 /// At rest where the level's point or frame is in a posture \[rad\].
-#[must_use]
-fn rest_at(level: &LevelSpec, q: &JointVector<f64>) -> Target<f64> {
-    let point = level.point.resolve();
-    let link = point.link.number();
+fn rest_at(
+    level: &LevelSpec,
+    arm: &EquippedArm,
+    plant: &PlantModel,
+    q: &JointVector<f64>,
+) -> Target<f64> {
     match level.task {
-        TaskSpec::Position => {
-            let state = JointState {
-                q: *q,
-                dq: JointVector::zeros(),
-            };
-            let (x, _) = PlantModel::new(&LWR_IV).point(&state, link, &point.offset.into());
-            Target::position(x)
+        TaskSpec::Position => Target::position(at_rest(plant, q, &level.point.resolve(arm))),
+        TaskSpec::Orientation => {
+            Target::orientation(orientation(plant, q, &level.point.frame(arm)))
         }
-        TaskSpec::Orientation => Target::orientation(orientation(q, link)),
     }
+}
+
+/// Where a point is in a posture \[rad\], base-plate frame \[m\].
+fn at_rest(plant: &PlantModel, q: &JointVector<f64>, point: &LinkPoint) -> Vector3<f64> {
+    let state = JointState {
+        q: *q,
+        dq: JointVector::zeros(),
+    };
+    let (x, _) = plant.point(&state, point.link.number(), &point.offset.into());
+    x
+}
+
+/// The arm as a line of corners in a posture \[rad\], base-plate frame \[m\]: base plate, the
+/// ends of all lengths d and a of the DH table, flange, tool. Corners at the same place are
+/// one.
+#[must_use]
+pub fn outline(arm: &EquippedArm, plant: &PlantModel, q: &JointVector<f64>) -> Vec<[f64; 3]> {
+    let state = JointState {
+        q: *q,
+        dq: JointVector::zeros(),
+    };
+    let at = |link, offset: [f64; 3]| plant.point(&state, link, &offset.into()).0;
+    let table = &arm.parameters;
+    let lengths = (0..DOF).flat_map(|link| {
+        let along_axis = at(link, [0.0, 0.0, table.links[link].d]);
+        [along_axis, at(link + 1, [0.0; 3])]
+    });
+    let ends = [Some(table.flange_point()), arm.point(TOOL_POINT)];
+    let ends = ends.iter().flatten().map(|point| at_rest(plant, q, point));
+    let foot = at(0, [0.0; 3]);
+    let mut corners = vec![Vector3::zeros()];
+    for corner in std::iter::once(foot).chain(lengths).chain(ends) {
+        let last = corners.last();
+        if last.is_none_or(|last| (corner - last).norm() >= CORNER) {
+            corners.push(corner);
+        }
+    }
+    corners.into_iter().map(Into::into).collect()
 }
 
 /// Angular velocity of a link \[rad/s\], from the velocities of its frame's origin

@@ -59,8 +59,9 @@ impl Experiment {
             // The others take the place of the exact law.
             _ => Controller::exact,
         };
-        make(self.scenario.arm(), &self.controller_config()?)
-            .map_err(|error| Invalid::line(error).within(&self.scenario.name))
+        let arm = self.scenario.arm().parameters;
+        make(&arm, &self.controller_config()?)
+            .map_err(|error| Invalid::line(error.named(&arm)).within(&self.scenario.name))
     }
 
     /// What that controller is made from.
@@ -127,6 +128,7 @@ impl Experiment {
             return self.run_over_fri(sink, progress);
         }
         let scenario = &self.scenario;
+        let arm = scenario.arm().parameters;
         let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
         let mut contacts = if self.contacts {
             Contacts::of(scenario)
@@ -146,20 +148,20 @@ impl Experiment {
         };
         let mut plant = Plant::with_options(
             self.plant,
-            scenario.arm(),
+            &arm,
             scenario.start(),
             cycle_s,
             self.seed,
             driver.plant_options(self.options),
         );
         let (levels, intervals) = (scenario.levels.len(), contacts.intervals());
-        let mut metrics = Metrics::new(levels, &intervals, scenario.arm(), cycle_s);
+        let mut metrics = Metrics::new(levels, &intervals, &arm, cycle_s);
         let mut ending = Ending::new(cycle_s);
 
         for cycle in 0.. {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
-            let unsafe_motion = UnsafeMotion::of(&truth, controller.arm().speed_limit());
+            let unsafe_motion = UnsafeMotion::of(&truth, &arm);
             let lost =
                 unsafe_motion.filter(|motion| matches!(motion, UnsafeMotion::NotFinite { .. }));
             if let Some(stop) = lost.map(Stop::Unsafe).or_else(interrupt::stop) {

@@ -20,7 +20,8 @@ pub use output::Output;
 /// Anything in the text that cannot be used.
 pub fn explain(text: &str) -> Result<Output, Invalid> {
     let input = Input::parse(text)?;
-    let (tasks, targets) = input.tasks();
+    let arm = input.arm()?;
+    let (tasks, targets) = input.tasks(&arm);
     let null_space = NullSpace {
         stiffness: diagonal(input.null_space.stiffness),
         damping: NullDamping::Joint(diagonal(input.null_space.damping)),
@@ -29,7 +30,7 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
     let observer = input.observer.as_ref();
     let gain = observer.map_or([0.0; 7], |observer| observer.gain);
     let inspection =
-        Inspection::new(input.arm(), &tasks, &null_space, gain).map_err(Invalid::line)?;
+        Inspection::new(&arm.parameters, &tasks, &null_space, gain).map_err(Invalid::line)?;
 
     let mut data = Data::new();
     data.observer.residual = input.residual.into();
@@ -61,7 +62,7 @@ pub fn explain(text: &str) -> Result<Output, Invalid> {
         data.demand = controller.decide(data, &gains).demand(&data.dynamics);
     });
     if let Some(fault) = data.allocation.fault(&data.demand) {
-        return Err(Invalid::line(fault).within("the torque of this state"));
+        return Err(Invalid::line(fault.named(&arm.parameters)).within("the torque of this state"));
     }
     let compensation = controller.residual_compensation(&data);
     Ok(Output::new(&data, &tasks, &compensation))

@@ -140,6 +140,9 @@ pub struct TorqueFigures {
 pub struct TorqueStep {
     /// The joint, from 1.
     pub joint: usize,
+    /// Its maker's name.
+    #[serde(skip)]
+    pub name: &'static str,
     /// By how much \[Nm\].
     pub step_nm: f64,
     /// Half of its rate limit times the cycle \[Nm\].
@@ -152,8 +155,8 @@ impl fmt::Display for TorqueStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the torque of joint {} stepped by {:.2} Nm in the cycle at {:.4} s, bound {} Nm",
-            self.joint, self.step_nm, self.t_s, self.bound_nm
+            "the torque of {} stepped by {:.2} Nm in the cycle at {:.4} s, bound {} Nm",
+            self.name, self.step_nm, self.t_s, self.bound_nm
         )
     }
 }
@@ -170,8 +173,8 @@ pub struct JointFigures {
 /// A joint beyond its range: the arm could not have gone there.
 #[derive(Clone, Copy, Debug)]
 pub struct Beyond {
-    /// The joint, from 1.
-    pub joint: usize,
+    /// The joint's name of its maker.
+    pub joint: &'static str,
     /// The position farthest outside its range \[rad\].
     pub reached: f64,
     /// What it may be \[rad\].
@@ -185,7 +188,7 @@ impl fmt::Display for Beyond {
         let [min, max] = self.range.map(|end| (end.to_degrees() * 1e9).round() / 1e9);
         write!(
             f,
-            "joint {joint} reached {reached:.4} deg, its range is {min} to {max}"
+            "{joint} reached {reached:.4} deg, its range is {min} to {max}"
         )
     }
 }
@@ -252,6 +255,7 @@ pub struct Metrics {
     max_torque: [f64; DOF],
     lowest: [f64; DOF],
     highest: [f64; DOF],
+    joints: [&'static str; DOF],
     position_range: [JointVector<f64>; 2],
     /// Of the change of torque in a cycle \[Nm\].
     step_bound: JointVector<f64>,
@@ -289,6 +293,7 @@ impl Metrics {
             max_torque: [0.0; DOF],
             lowest: [f64::INFINITY; DOF],
             highest: [f64::NEG_INFINITY; DOF],
+            joints: arm.links.map(|link| link.name),
             position_range: [
                 limit(|link| link.position_range[0]),
                 limit(|link| link.position_range[1]),
@@ -367,6 +372,7 @@ impl Metrics {
             if step_nm / bound_nm > most {
                 self.step = Some(TorqueStep {
                     joint: joint + 1,
+                    name: self.joints[joint],
                     step_nm,
                     bound_nm,
                     t_s: sample.t_s,
@@ -440,7 +446,7 @@ impl Metrics {
             let reached = if low > high { lowest } else { highest };
             let is_beyond = low.max(high) > ROUNDING_RAD && self.cycles > 0;
             is_beyond.then_some(Beyond {
-                joint: index + 1,
+                joint: self.joints[index],
                 reached,
                 range: self.position_range.map(|end| end[index]),
             })

@@ -44,8 +44,8 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
         show(format_args!("\r{:30}\r", ""));
     }
     // Figures of runs that were cut short are no evidence.
-    if let Some(stop) = interrupt::stop() {
-        tell(format_args!("error: {stop}: nothing was written"));
+    if interrupt::stop().is_some() {
+        tell("error: interrupted: nothing was written");
         return Ok(RunVerdict::Stopped.exit_code());
     }
     let evidence = stability::evidence()?;

@@ -5,7 +5,8 @@ mod level;
 use std::fmt;
 
 use controller_core::Fault;
-use controller_core::joint::{JointState, JointVector};
+use controller_core::arm::ArmParameters;
+use controller_core::joint::JointState;
 use controller_core::ranges::SPEED_FACTOR;
 
 pub(crate) use level::LevelProbes;
@@ -23,24 +24,26 @@ pub enum Stop {
     Quit,
 }
 
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Stop {
+    /// The reason in words, for `arm`.
+    #[must_use]
+    pub fn named(&self, arm: &ArmParameters) -> String {
         match self {
-            Self::Unsafe(motion) => motion.fmt(f),
-            Self::Fault(fault) => fault.fmt(f),
-            Self::Interrupted => f.write_str("interrupted"),
-            Self::Quit => f.write_str("quit"),
+            Self::Unsafe(motion) => motion.to_string(),
+            Self::Fault(fault) => fault.named(arm).to_string(),
+            Self::Interrupted => "interrupted".to_string(),
+            Self::Quit => "quit".to_string(),
         }
     }
 }
 
-/// A true motion that must be stopped. Joints count from 1.
+/// A true motion that must be stopped. Joints have the names of their maker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnsafeMotion {
     /// Position \[rad\] or speed \[rad/s\] is infinite or NaN.
     NotFinite {
         /// The joint.
-        joint: usize,
+        joint: &'static str,
         /// Its position.
         q: f64,
         /// Its speed.
@@ -49,7 +52,7 @@ pub enum UnsafeMotion {
     /// A speed beyond [`SPEED_FACTOR`] times the data sheet \[rad/s\].
     Speed {
         /// The joint.
-        joint: usize,
+        joint: &'static str,
         /// Its speed.
         dq: f64,
         /// What it may be.
@@ -60,10 +63,10 @@ pub enum UnsafeMotion {
 impl UnsafeMotion {
     /// The first joint whose motion must be stopped, if there is one.
     #[must_use]
-    pub fn of(state: &JointState<f64>, speed_limit: &JointVector<f64>) -> Option<Self> {
-        for index in 0..speed_limit.len() {
-            let (joint, q, dq) = (index + 1, state.q[index], state.dq[index]);
-            let limit = SPEED_FACTOR * speed_limit[index];
+    pub fn of(state: &JointState<f64>, arm: &ArmParameters) -> Option<Self> {
+        for (index, link) in arm.links.iter().enumerate() {
+            let (joint, q, dq) = (link.name, state.q[index], state.dq[index]);
+            let limit = SPEED_FACTOR * link.speed_limit;
             if !(q.is_finite() && dq.is_finite()) {
                 return Some(Self::NotFinite { joint, q, dq });
             }
@@ -79,14 +82,11 @@ impl fmt::Display for UnsafeMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { joint, q, dq } => {
-                write!(
-                    f,
-                    "joint {joint} is not finite: q = {q} rad, dq = {dq} rad/s"
-                )
+                write!(f, "{joint} is not finite: q = {q} rad, dq = {dq} rad/s")
             }
             Self::Speed { joint, dq, limit } => write!(
                 f,
-                "speed of joint {joint} is {dq:.3} rad/s; allowed -{limit:.3} to {limit:.3}"
+                "speed of {joint} is {dq:.3} rad/s; allowed -{limit:.3} to {limit:.3}"
             ),
         }
     }

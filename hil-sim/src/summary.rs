@@ -125,7 +125,10 @@ impl Summary {
                 let missing = missing(scenario, &acceptance, metrics, &levels);
                 verdict(&failures, &missing)
             }
-            Some(stop) => (Verdict::Stopped, Some(stop.to_string())),
+            Some(stop) => (
+                Verdict::Stopped,
+                Some(stop.named(&scenario.arm().parameters)),
+            ),
         };
         let has_hands = conditions.contacts && !scenario.hands.is_empty();
         Self {

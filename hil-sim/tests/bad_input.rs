@@ -223,6 +223,21 @@ fn states() {
             r#"{"link": 7, "offset_m": [0, 0]}"#,
         ),
         (
+            "an arm whose joint 4 has another range",
+            "\"lwr_iv\"",
+            "\"openarm_v20_left\"",
+        ),
+        (
+            "mounted by more than a turn",
+            "\"levels\"",
+            r#""mount": {"rpy_deg": [0, 400, 0]}, "levels""#,
+        ),
+        (
+            "an impossible tool",
+            "\"levels\"",
+            r#""tool": {"mass_kg": 1, "center_of_mass_m": [0,0,0], "inertia_kg_m2": [1,0,0,1,0,3]}, "levels""#,
+        ),
+        (
             "unknown controller",
             "\"levels\"",
             r#""controller": "no-obsever", "levels""#,
@@ -251,6 +266,11 @@ fn scenario_files() {
     let more = "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n";
     let rows = format!("{more}{more}[null_space]");
     let long = format!("name = \"{}\"", "long".repeat(100_000));
+    let tool = |from: &str, to: &str| {
+        let good = "[tool]\nmass_kg = 1\ncenter_of_mass_m = [0, 0, 0]\n\
+                    inertia_kg_m2 = [1, 0, 0, 1, 0, 1]\n[observer]";
+        good.replacen(from, to, 1)
+    };
     let mutations = [
         ("not TOML", "[observer]", "[observer"),
         (
@@ -346,6 +366,84 @@ fn scenario_files() {
             "plant = \"idael\"",
         ),
         ("unknown metric", "level1_rms_mm", "level2_rms_mm"),
+        ("a point that another arm has", "lwr_iv", "fr3"),
+        (
+            "a start that another arm cannot have",
+            "lwr_iv",
+            "openarm_v10_left",
+        ),
+        ("the point of no tool", "\"flange\"", "\"tool\""),
+        (
+            "mount by two angles",
+            "[observer]",
+            "[mount]\nrpy_deg = [180, 0]\n[observer]",
+        ),
+        (
+            "mount by NaN",
+            "[observer]",
+            "[mount]\nrpy_deg = [0, nan, 0]\n[observer]",
+        ),
+        (
+            "mount by more than a turn",
+            "[observer]",
+            "[mount]\nrpy_deg = [0, 0, 361]\n[observer]",
+        ),
+        (
+            "mount elsewhere",
+            "[observer]",
+            "[mount]\nrpy_deg = [0, 0, 0]\nshift_m = [0, 0, 1]\n[observer]",
+        ),
+        (
+            "a tool without mass",
+            "[observer]",
+            &tool("mass_kg = 1", "mass_kg = 0"),
+        ),
+        (
+            "a tool of 1 ug",
+            "[observer]",
+            &tool("mass_kg = 1", "mass_kg = 1e-9"),
+        ),
+        (
+            "a tool that pulls up",
+            "[observer]",
+            &tool("mass_kg = 1", "mass_kg = -1"),
+        ),
+        (
+            "a tool heavier than any arm",
+            "[observer]",
+            &tool("mass_kg = 1", "mass_kg = 1000"),
+        ),
+        (
+            "a tool far away",
+            "[observer]",
+            &tool("[0, 0, 0]", "[0, 0, 30]"),
+        ),
+        (
+            "a tool turned too far",
+            "[observer]",
+            &tool("mass_kg", "rpy_deg = [0, 0, -400]\nmass_kg"),
+        ),
+        ("a tool of five moments", "[observer]", &tool("0, 1]", "0]")),
+        (
+            "a moment of inertia below 0",
+            "[observer]",
+            &tool("0, 1]", "0, -1]"),
+        ),
+        (
+            "moments that no body has",
+            "[observer]",
+            &tool("0, 1]", "0, 2.1]"),
+        ),
+        (
+            "products that no body has",
+            "[observer]",
+            &tool("1, 0, 0", "1, 3, 0"),
+        ),
+        (
+            "a tool without inertia",
+            "[observer]",
+            &tool("inertia_kg_m2", "# inertia_kg_m2"),
+        ),
         ("dead time of a limit", "dead_cycles = 1", "dead_cycles = 9"),
     ];
     for (what, from, to) in mutations {

@@ -47,6 +47,11 @@ fn names_and_values_are_as_many() {
         tau_ext: [5.0; 7].into(),
         hand_force_n: 6.0,
         conditioning: vec![7.0; 3],
+        limits: Some(run::LimitSample {
+            status: controller_core::fault::Status::CLEAR,
+            null_share: 1.0,
+            null_power: 0.0,
+        }),
         levels: Vec::new(),
     };
     for channel in run::CHANNELS {

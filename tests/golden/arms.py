@@ -3,6 +3,7 @@
     pip install pin numpy
     python arms.py                     # 20 states of each arm into arms.json
     python arms.py --states 200        # more: the test takes what it finds
+    python arms.py --printed           # what right angles of 1.5708 would make; writes nothing
 
 Reads arm_tables.json: the public descriptions (source, commit and licence stand in
 arms/src) as standard DH tables with exact right angles. Every joint is a line in the
@@ -44,6 +45,12 @@ def quarter(n, axis):
     return pin.SE3(np.array(turn[axis], float), np.zeros(3))
 
 
+def printed_quarter(n, axis):
+    """As descriptions print it: 3.7e-6 rad more than a right angle."""
+    turn = pin.utils.rotate(axis, 1.5708 * (n if abs(n) < 3 else n - 4 * np.sign(n)))
+    return pin.SE3(turn, np.zeros(3))
+
+
 def shift(x, y, z):
     return pin.SE3(np.eye(3), np.array([x, y, z], float))
 
@@ -55,7 +62,7 @@ def pose(table):
 class Arm:
     """Lines, bodies and points at q = 0 in base-plate axes."""
 
-    def __init__(self, table):
+    def __init__(self, table, quarter=quarter):
         self.gravity = np.array(table["gravity"], float)
         self.axes, self.origins, self.bodies, self.points = [], [], [], {}
         self.rotor = np.array(table["rotor_inertia"], float)
@@ -141,11 +148,33 @@ def evaluate(model, q, dq):
     return {key: [float(x) + 0.0 for x in value] for key, value in out.items()}
 
 
+def show_printed(tables, states):
+    """Largest difference of the flange and of M over random states."""
+    rng = np.random.default_rng(SEED)
+    for table in tables:
+        if "mirror_of" in table:
+            continue
+        arms = [Arm(table), Arm(table, printed_quarter)]
+        low, high, _ = arms[0].limits
+        worst = np.zeros(2)
+        for _ in range(states):
+            q = rng.uniform(low, high)
+            exact, printed = [evaluate(arm.model(False), q, np.zeros(DOF)) for arm in arms]
+            way = np.subtract(exact["flange"], printed["flange"])
+            mass = np.array([exact["mass_matrix"], printed["mass_matrix"]])
+            worst = np.maximum(worst, [np.abs(way).max(), np.abs(mass[0] - mass[1]).max() / np.abs(mass[0]).max()])
+        print(f"{table['name']}: flange {1e6 * worst[0]:.1f} um, M {worst[1]:.1e}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--states", type=int, default=20)
+    parser.add_argument("--printed", action="store_true")
     options = parser.parse_args()
     tables = json.loads((HERE / "arm_tables.json").read_text())
+    if options.printed:
+        show_printed(tables, options.states)
+        return
     arms = {table["name"]: Arm(table) for table in tables if "mirror_of" not in table}
     rng = np.random.default_rng(SEED)
     lines = []

@@ -199,7 +199,10 @@ fn contacts_act_on_the_point_that_they_name() {
         let scenario = Scenario::find(name).expect("built in");
         let contacts = Contacts::of(&scenario);
         for push in &scenario.pushes {
-            let (middle, point) = ((push.from_s + push.to_s) / 2.0, push.point.resolve());
+            let (middle, point) = (
+                (push.from_s + push.to_s) / 2.0,
+                push.point.resolve(&scenario.arm()),
+            );
             for _ in 0..20 {
                 let state = states.state();
                 let (kinematics, _) = evaluate(&model, &state);

@@ -11,8 +11,8 @@ use controller_core::ranges::DEAD_CYCLES_MAX;
 use controller_core::{Controller, Measurement, State, Target};
 use hil_sim::arm_points::origins;
 use hil_sim::contact::Contacts;
-use hil_sim::plant::elastic::JOINT_STIFFNESS;
-use hil_sim::plant::friction::COULOMB;
+use hil_sim::plant::actuators::Actuators;
+use hil_sim::plant::friction::FrictionLaw;
 use hil_sim::plant::{Plant, PlantModel, PlantOptions};
 
 const CYCLE: f64 = 0.002;
@@ -176,7 +176,7 @@ fn a_held_arm_with_stiction_does_not_move_at_all() {
     // Off balance by a third of the sliding level; torque noise comes on top.
     let mut plant = plant(PlantKind::Realistic, STICTION);
     let start = *plant.state();
-    let offset = JointVector::from(COULOMB) / 3.0;
+    let offset = FrictionLaw::of(&LWR_IV).coulomb / 3.0;
     let torque = plant.model().gravity_torque(&start.q) + offset;
     let reading = plant.measure();
     for n in 0..1000 {
@@ -192,7 +192,7 @@ fn elastic_joints_yield_by_load_over_stiffness() {
     let deflection = |plant: &Plant| plant.motors().expect("elastic").q - plant.state().q;
     let expected = |plant: &Plant, q: &JointVector<f64>| {
         let load = plant.model().gravity_torque(q);
-        load.component_div(&JointVector::from(JOINT_STIFFNESS))
+        load.component_div(&Actuators::of(&LWR_IV).stiffness)
     };
     // At the start exactly, up to the rounding of an angle.
     let start = START.into();
@@ -233,16 +233,18 @@ fn two_level(kind: PlantKind, seed: u64, options: PlantOptions) -> Figures {
     let scenario = Scenario::find("two-level").expect("built in");
     let config = scenario.controller_config(options.dead_cycles as u8);
     let config = config.expect("levels that make a set");
-    let controller = Controller::new(scenario.arm(), &config).expect("a valid configuration");
+    let controller =
+        Controller::new(&scenario.arm().parameters, &config).expect("a valid configuration");
     let (cycle_s, cycles) = (scenario.cycle_s(), scenario.cycles());
     let (origins, mut contacts) = (
         origins(&scenario, &scenario.start()),
         Contacts::of(&scenario),
     );
-    let (arm, start) = (scenario.arm(), scenario.start());
+    let (equipped, start) = (scenario.arm(), scenario.start());
+    let arm = &equipped.parameters;
     let mut state = State::new();
     let mut plant = Plant::with_options(kind, arm, start, cycle_s, seed, options);
-    let point = scenario.levels[0].point.resolve();
+    let point = scenario.levels[0].point.resolve(&equipped);
     let (mut squares, mut max_mm) = (0.0, 0.0f64);
     for cycle in 0..cycles {
         let t_s = cycle as f64 * cycle_s;

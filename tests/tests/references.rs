@@ -28,7 +28,7 @@ fn start() -> JointVector<f64> {
 fn pose() -> ControllerConfig {
     with_tasks(&[
         Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS),
-        Task::orientation(Link::L7, Axes::XYZ, REFERENCE_GAINS),
+        Task::orientation(Link::L7.frame(), Axes::XYZ, REFERENCE_GAINS),
     ])
 }
 

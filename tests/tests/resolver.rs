@@ -41,7 +41,10 @@ fn errors(
 ) -> Vec<f64> {
     let levels = scenario.levels.iter().zip(reference.targets());
     let error = |(level, target): (&LevelSpec, &Target<f64>)| {
-        let (point, axes) = (level.point.resolve(), Axes::from_name(&level.axes));
+        let (point, axes) = (
+            level.point.resolve(&scenario.arm()),
+            Axes::from_name(&level.axes),
+        );
         let (x, _) = model.point(&at_rest(*q), point.link.number(), &point.offset.into());
         let Target::Position { x: desired, .. } = target else {
             panic!("a position");

@@ -71,6 +71,8 @@ fn parse(text: &str) -> Result<Counts, Trouble> {
         let (experiment, precision) = match case.split_once("-levels-") {
             Some(("2", precision)) => ("two-level", precision),
             Some(("3", precision)) => ("case-1", precision),
+            // Another arm's: no column of the table.
+            Some(_) => continue,
             _ => return Err(wrong()),
         };
         let stage = match stage {
@@ -95,6 +97,10 @@ mod tests {
         assert_eq!(counts["two-level f64"]["cycle"], 9000);
         assert_eq!(counts["case-1 f32"]["task rows"], 12);
         assert_eq!(counts["case-1 f32"]["observer input"], 7);
+        assert_eq!(
+            parse("fr3-2-levels-f64 step 9300").expect("counts"),
+            Counts::new()
+        );
         assert!(parse("2-levels-f64 step").is_err());
     }
 }

@@ -5,6 +5,7 @@ use controller_core::joint::Vector3;
 use controller_core::task::trajectory::quintic;
 use serde::Deserialize;
 
+use super::arm::EquippedArm;
 use super::contact::{Interval, validate_times};
 use super::point::PointSpec;
 use crate::invalid::Invalid;
@@ -41,7 +42,7 @@ pub enum Direction {
     X,
     /// Along y.
     Y,
-    /// Up.
+    /// Along z.
     Z,
 }
 
@@ -50,8 +51,8 @@ impl Hand {
     ///
     /// # Errors
     /// What cannot be used.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        self.point.validate()?;
+    pub fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
+        self.point.validate(arm)?;
         let half = validate_times(self.from_s, self.to_s)? / 2.0;
         Range::above(0.0, half).check("approach_s", self.approach_s)?;
         HAND_STIFFNESS_N_M.check("stiffness_n_m", self.stiffness_n_m)?;

@@ -3,6 +3,7 @@
 use controller_core::{Axes, Task, TaskGains};
 use serde::Deserialize;
 
+use super::arm::EquippedArm;
 use super::point::PointSpec;
 use super::reference::ReferenceSpec;
 use crate::invalid::Invalid;
@@ -15,7 +16,7 @@ pub enum TaskSpec {
     /// The position of the point.
     #[default]
     Position,
-    /// The orientation of the point's link.
+    /// The orientation of the frame that turns with the point ([`PointSpec::frame`]).
     Orientation,
 }
 
@@ -52,8 +53,8 @@ pub enum AxisGain {
 }
 
 impl LevelSpec {
-    pub(super) fn validate(&self) -> Result<(), Invalid> {
-        self.point.validate()?;
+    pub(super) fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
+        self.point.validate(arm)?;
         let Some(axes) = Axes::from_name(&self.axes) else {
             return Err(Invalid::new(
                 "axes",
@@ -88,9 +89,9 @@ impl LevelSpec {
             .map_err(|error| error.in_table("reference"))
     }
 
-    /// The core's task. The level must be valid.
+    /// The core's task for `arm`. The level must be valid.
     #[must_use]
-    pub fn task(&self) -> Task {
+    pub fn task(&self, arm: &EquippedArm) -> Task {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |gain: &AxisGain| match gain {
             AxisGain::Uniform(value) => [*value; 3],
@@ -106,10 +107,9 @@ impl LevelSpec {
             }
         };
         let gains = TaskGains::diagonal(spread(&self.stiffness), spread(&self.damping));
-        let point = self.point.resolve();
         match self.task {
-            TaskSpec::Position => Task::position(point, axes, gains),
-            TaskSpec::Orientation => Task::orientation(point.link, axes, gains),
+            TaskSpec::Position => Task::position(self.point.resolve(arm), axes, gains),
+            TaskSpec::Orientation => Task::orientation(self.point.frame(arm), axes, gains),
         }
     }
 

@@ -1,11 +1,14 @@
 //! Points of the arm in files: by name, or on any link.
 
-use arms::{LWR_IV, LWR_IV_FLANGE};
-use controller_core::{Link, LinkPoint};
+use controller_core::{Link, LinkFrame, LinkPoint};
 use serde::Deserialize;
 
+use super::arm::{EquippedArm, TOOL_POINT};
 use crate::invalid::Invalid;
 use crate::ranges::{LINK, OFFSET_M};
+
+/// Name of the point in which the frame of the flange has its origin, of every arm.
+const FLANGE_POINT: &str = "flange";
 
 /// A point fixed to a link.
 #[derive(Clone, Debug, Deserialize)]
@@ -31,19 +34,14 @@ pub struct OnLink {
 }
 
 impl PointSpec {
-    /// Checks name, link and offset.
+    /// Checks name, link and offset: the names are those of `arm`.
     ///
     /// # Errors
     /// What cannot be used.
-    pub fn validate(&self) -> Result<(), Invalid> {
+    pub fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
         match self {
-            Self::Name(name) => {
-                if LWR_IV.point(name).is_some() {
-                    return Ok(());
-                }
-                let known: Vec<_> = LWR_IV.points.iter().map(|point| point.name).collect();
-                Err(Invalid::name("point", name, &known))
-            }
+            Self::Name(name) if arm.point(name).is_some() => Ok(()),
+            Self::Name(name) => Err(Invalid::name("point", name, &arm.point_names())),
             Self::OnLink(OnLink { link, offset_m }) => {
                 LINK.check("link", *link)?;
                 offset_m
@@ -53,16 +51,31 @@ impl PointSpec {
         }
     }
 
-    /// The point. An invalid name counts as the flange, an invalid link as the last.
+    /// The point of `arm`. An invalid name counts as the flange, an invalid link as the last.
     #[must_use]
-    pub fn resolve(&self) -> LinkPoint {
+    pub fn resolve(&self, arm: &EquippedArm) -> LinkPoint {
         match self {
-            Self::Name(name) => LWR_IV.point(name).unwrap_or(LWR_IV_FLANGE),
+            Self::Name(name) => {
+                let named = arm.point(name);
+                named.unwrap_or_else(|| arm.parameters.flange_point())
+            }
             Self::OnLink(OnLink { link, offset_m }) => LinkPoint {
                 link: Link::from_number(*link).unwrap_or(Link::L7),
                 offset: *offset_m,
             },
         }
+    }
+
+    /// The frame of `arm` that turns with the point: of the points `flange` and `tool` those of
+    /// flange and tool, of others the DH frame of their link.
+    #[must_use]
+    pub fn frame(&self, arm: &EquippedArm) -> LinkFrame {
+        let own = match self {
+            Self::Name(name) if name == TOOL_POINT => arm.tool_frame(),
+            Self::Name(name) if name == FLANGE_POINT => Some(arm.parameters.flange_frame()),
+            _ => None,
+        };
+        own.unwrap_or_else(|| self.resolve(arm).link.frame())
     }
 
     /// Its name, or "link N".

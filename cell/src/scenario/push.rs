@@ -3,6 +3,7 @@
 use controller_core::joint::Vector3;
 use serde::Deserialize;
 
+use super::arm::EquippedArm;
 use super::contact::{Interval, validate_times};
 use super::point::PointSpec;
 use crate::invalid::Invalid;
@@ -29,8 +30,8 @@ impl Push {
     ///
     /// # Errors
     /// What cannot be used.
-    pub fn validate(&self) -> Result<(), Invalid> {
-        self.point.validate()?;
+    pub fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
+        self.point.validate(arm)?;
         let half = validate_times(self.from_s, self.to_s)? / 2.0;
         Range::above(0.0, half).check("ramp_s", self.ramp_s)?;
         self.force_n

@@ -2,6 +2,7 @@
 
 use controller_core::Target;
 use controller_core::joint::Vector3;
+use controller_core::task::orientation::{self, Quaternion};
 use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
@@ -30,18 +31,32 @@ pub enum ReferenceSpec {
     Swing(Swing),
 }
 
-/// Turning to and fro about a base-plate axis.
+/// Turning to and fro about an axis.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Swing {
     /// Axis, normalised when read.
     pub axis: [f64; 3],
+    /// Of which frame it is one.
+    #[serde(default)]
+    pub axis_of: AxisOf,
     /// Largest angle \[deg\].
     pub angle_deg: f64,
     /// Time of one swing \[s\].
     pub period_s: f64,
     /// Time in which the angle grows \[s\].
     pub growth_s: f64,
+}
+
+/// The frame of the axis of a swing.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum AxisOf {
+    /// The base plate.
+    #[default]
+    BasePlate,
+    /// The frame that swings, such as that of the tool.
+    Own,
 }
 
 /// Turning in a plane.
@@ -115,7 +130,7 @@ impl ReferenceSpec {
         match (self.trajectory(), self, origin) {
             (Some(trajectory), _, Target::Position { x, .. }) => trajectory.sample(x, t_s),
             (_, Self::Swing(swing), Target::Orientation { q, .. }) => {
-                swing.rotation().sample(q, t_s)
+                swing.rotation(q).sample(q, t_s)
             }
             _ => *origin,
         }
@@ -135,14 +150,33 @@ impl ReferenceSpec {
 }
 
 impl Swing {
-    fn rotation(&self) -> Rotation<f64> {
+    /// From the orientation `start`.
+    fn rotation(&self, start: &Quaternion<f64>) -> Rotation<f64> {
+        let axis = Vector3::from(self.axis).normalize();
         Rotation::Swing {
-            axis: Vector3::from(self.axis).normalize(),
+            axis: match self.axis_of {
+                AxisOf::BasePlate => axis,
+                AxisOf::Own => in_base_plate(start, &axis),
+            },
             amplitude_rad: self.angle_deg.to_radians(),
             period_s: self.period_s,
             growth_s: self.growth_s,
         }
     }
+}
+
+/// A direction of a frame at `orientation`, in base-plate axes; of unit length.
+fn in_base_plate(orientation: &Quaternion<f64>, direction: &Vector3<f64>) -> Vector3<f64> {
+    let [x, y, z] = (*direction).into();
+    let back = Quaternion::from([
+        orientation[0],
+        -orientation[1],
+        -orientation[2],
+        -orientation[3],
+    ]);
+    let turned = orientation::product(orientation, &Quaternion::from([0.0, x, y, z]));
+    let turned = orientation::product(&turned, &back);
+    Vector3::new(turned[1], turned[2], turned[3]).normalize()
 }
 
 impl Turn {
@@ -156,6 +190,43 @@ impl Turn {
             radius_m: self.radius_m,
             period_s: self.period_s,
             growth_s: self.growth_s,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// A frame turned about its own axis is q r, about the base plate's r q.
+    #[test]
+    fn a_swing_is_about_an_axis_of_the_base_plate_or_its_own() {
+        let start = orientation::product(
+            &orientation::about_axis(&Vector3::z(), FRAC_PI_2),
+            &orientation::about_axis(&Vector3::x(), 0.7),
+        );
+        let swing = |axis_of| {
+            ReferenceSpec::Swing(Swing {
+                axis: [0.0, 3.0, 4.0],
+                axis_of,
+                angle_deg: 20.0,
+                period_s: 4.0,
+                growth_s: 0.5,
+            })
+        };
+        // A quarter of a swing: the whole angle.
+        let turn = orientation::about_axis(&Vector3::new(0.0, 0.6, 0.8), 20_f64.to_radians());
+        for (axis_of, expected) in [
+            (AxisOf::BasePlate, orientation::product(&turn, &start)),
+            (AxisOf::Own, orientation::product(&start, &turn)),
+        ] {
+            let Target::Orientation { q, .. } =
+                swing(axis_of).sample(&Target::orientation(start), 1.0)
+            else {
+                panic!("an orientation");
+            };
+            assert!(orientation::chord(&q, &expected).norm() < 1e-15, "{q}");
         }
     }
 }

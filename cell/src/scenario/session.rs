@@ -1,7 +1,6 @@
 //! A scenario as the bridge runs it: configuration of the session, and its
 //! reference motion.
 
-use arms::LWR_IV_FLANGE;
 use bridge::session::SessionConfig;
 use bridge::source::ReferenceSource;
 use controller_core::Reference;
@@ -24,10 +23,11 @@ impl Scenario {
     ) -> Result<SessionConfig, Invalid> {
         let mut controller = self.controller_config(dead_cycles)?;
         controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
+        let arm = self.arm().parameters;
         Ok(SessionConfig {
             // A damaged datagram or two are no fault of the arm.
             doubted_max: 2,
-            ..SessionConfig::new(self.arm(), controller, LWR_IV_FLANGE, duration_s)
+            ..SessionConfig::new(&arm, controller, arm.flange_point(), duration_s)
         })
     }
 }

@@ -59,6 +59,16 @@ static void arguments(void) {
     EXPECT(STRATUM_ERROR_NULL, stratum_settings_default(STRATUM_ABI_VERSION, 0));
     EXPECT(STRATUM_ERROR_MISALIGNED,
            stratum_settings_default(STRATUM_ABI_VERSION, ODD(StratumSettings)));
+    EXPECT(STRATUM_ERROR_ABI, stratum_settings_of_arm(1, "fr3", &settings));
+    EXPECT(STRATUM_ERROR_PRESET, stratum_settings_of_arm(STRATUM_ABI_VERSION, "", &settings));
+    EXPECT(STRATUM_ERROR_NULL, stratum_settings_of_arm(STRATUM_ABI_VERSION, 0, &settings));
+    EXPECT(STRATUM_ERROR_NULL, stratum_settings_of_arm(STRATUM_ABI_VERSION, "fr3", 0));
+    EXPECT(STRATUM_ERROR_MISALIGNED,
+           stratum_settings_of_arm(STRATUM_ABI_VERSION, "fr3", ODD(StratumSettings)));
+    EXPECT(STRATUM_OK, stratum_settings_of_arm(STRATUM_ABI_VERSION, "openarm_v20_left", &settings));
+    CHECK(settings.arm.name[16] == 0 && settings.arm.links[3].rotor_inertia > 0.0);
+    EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
+    EXPECT(STRATUM_OK, stratum_arm_preset("panda_identified", &arm));
     EXPECT(STRATUM_OK, stratum_arm_preset("lwr_iv", &arm));
     EXPECT(STRATUM_ERROR_PRESET, stratum_arm_preset("lwr", &arm));
     EXPECT(STRATUM_ERROR_PRESET, stratum_arm_preset("lwr_iv+", &arm));
@@ -284,7 +294,7 @@ static void configurations(void) {
     REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 3);
     REFUSED(STRATUM_CONFIG_NO_AXIS, settings.level_count = 2; settings.levels[1].axes = 0);
     REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 0);
-    REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 8);
+    REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = STRATUM_ON_TOOL + 1);
     REFUSED(STRATUM_CONFIG_POINT_OFFSET, settings.levels[0].offset[1] = 11.0);
     REFUSED(STRATUM_CONFIG_POINT_OFFSET, settings.levels[0].offset[1] = bad[0]);
     REFUSED(STRATUM_CONFIG_GAIN_VALUE, settings.levels[0].stiffness[2][2] = bad[0]);
@@ -303,6 +313,13 @@ static void configurations(void) {
     REFUSED(STRATUM_CONFIG_ARM_NON_FINITE, settings.arm.links[2].com[0] = bad[0]);
     REFUSED(STRATUM_CONFIG_ARM_NOT_POSITIVE, settings.arm.links[6].torque_limit = 0.0);
     REFUSED(STRATUM_CONFIG_ARM_INERTIA, settings.arm.links[4].inertia[0] = 10.0);
+    REFUSED(STRATUM_CONFIG_ARM_RANGE, settings.arm.base.rotation[0][1] = 1.0);
+    REFUSED(STRATUM_CONFIG_ARM_RANGE, settings.arm.links[1].position_range[0] = 3.0);
+    REFUSED(STRATUM_CONFIG_ARM_RANGE, settings.tool.mass = -1.0);
+    REFUSED(STRATUM_CONFIG_ARM_NON_FINITE, settings.tool.pose.shift[2] = bad[0]);
+    REFUSED(STRATUM_CONFIG_FRAME_ROTATION,
+            settings.levels[0].task = STRATUM_TASK_ORIENTATION;
+            settings.levels[0].rotation[2][2] = 0.5);
 }
 
 int main(void) {

@@ -16,6 +16,7 @@ static char text[STRATUM_TEXT_SIZE];
 static double q[STRATUM_JOINTS], dq[STRATUM_JOINTS], torque[STRATUM_JOINTS];
 
 static void settings_default(void) { stratum_settings_default(STRATUM_ABI_VERSION, &settings); }
+static void settings_of_arm(void) { stratum_settings_of_arm(STRATUM_ABI_VERSION, "fr3", &settings); }
 static void settings_text(void) { stratum_settings_text(&settings, text, sizeof text); }
 static void controller_init(void) { stratum_controller_init(&controller, &settings); }
 static void state_init(void) { stratum_state_init(&state, &controller, q); }
@@ -32,6 +33,7 @@ static const struct {
     void (*call)(void);
     uint32_t limit;
 } functions[] = {
+    {"settings_of_arm", settings_of_arm, 6144},
     {"settings_default", settings_default, 6144},
     {"settings_text", settings_text, 22528},
     {"controller_init", controller_init, 16384},

@@ -1,10 +1,11 @@
 //! What is measured: the controllers of the scenarios `two-level` ("2 levels",
 //! flange and null space) and `case-1` ("3 levels", flange, wrist in the plane
-//! and null space), in random and adversarial states.
+//! and null space), of the LWR or another arm, in random and adversarial states.
 
 pub mod stages;
 
-use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
+use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS};
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::real::Real;
 use controller_core::resolver::{Resolver, ResolverConfig};
@@ -40,15 +41,22 @@ pub struct Input {
 
 /// The controller with two or three levels, the null space counted.
 pub fn levels<T: Real>(count: usize) -> Case<T> {
-    let wrist = LWR_IV.point("wrist").expect("a point of the arm");
+    levels_of(&LWR_IV, count)
+}
+
+/// The same of another arm, with its name.
+pub fn levels_of<T: Real>(arm: &ArmParameters, count: usize) -> Case<T> {
+    let wrist = arm.point("wrist").expect("a point of the arm");
     let gains = TaskGains::uniform(400.0, 40.0);
     let tasks = [
-        Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
+        Task::position(arm.flange_point(), Axes::XYZ, gains),
         Task::position(wrist, Axes::XY, gains),
     ];
+    // Lighter arms bear less in this cycle; the work does not depend on it.
+    let share = if arm.name == LWR_IV.name { 1.0 } else { 0.1 };
     let config = ControllerConfig {
         tasks: TaskSet::new(&tasks[..count - 1]).expect("valid tasks"),
-        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING.map(|d| d * share)),
         observer_gain: [50.0; 7],
         cycle_s: 0.002,
         dead_cycles: 0,
@@ -58,10 +66,15 @@ pub fn levels<T: Real>(count: usize) -> Case<T> {
         gain: 10.0,
         cycle_s: config.cycle_s,
     };
+    let levels = format!("{count}-levels-{}", std::any::type_name::<T>());
     Case {
-        name: format!("{count}-levels-{}", std::any::type_name::<T>()),
-        resolver: Resolver::new(&LWR_IV, &resolver).expect("a valid configuration"),
-        controller: Controller::new(&LWR_IV, &config).expect("a valid configuration"),
+        name: if arm.name == LWR_IV.name {
+            levels
+        } else {
+            format!("{}-{levels}", arm.name)
+        },
+        resolver: Resolver::new(arm, &resolver).expect("a valid configuration"),
+        controller: Controller::new(arm, &config).expect("a valid configuration"),
     }
 }
 
@@ -93,25 +106,31 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn joints(&mut self, scale: impl Fn(usize) -> f64) -> [f64; 7] {
-        std::array::from_fn(|i| self.unit() * scale(i))
+    fn joints(&mut self, scaled: impl Fn(usize, f64) -> f64) -> [f64; 7] {
+        std::array::from_fn(|i| scaled(i, self.unit()))
     }
 }
 
 /// Random states over the whole range of the joints, then what is hard: singular,
 /// at rest, at the border of what is believed, denormal, saturated.
-pub fn states() -> Vec<Input> {
+pub fn states(arm: &ArmParameters) -> Vec<Input> {
     let mut random = Random(ChaCha8Rng::seed_from_u64(1));
-    let position = |i: usize| LWR_IV.links[i].position_range[1];
-    let speed = |i: usize| LWR_IV.links[i].speed_limit;
+    let range = |i: usize| arm.links[i].position_range;
+    let anywhere = |random: &mut Random| {
+        random.joints(|i, unit| {
+            let [least, greatest] = range(i);
+            (least + greatest) / 2.0 + unit * ((greatest - least) / 2.0)
+        })
+    };
+    let speed = |i: usize| arm.links[i].speed_limit;
     let mut states: Vec<Input> = (0..RANDOM)
         .map(|_| Input {
             kind: "random",
-            q: random.joints(position),
-            dq: random.joints(speed),
+            q: anywhere(&mut random),
+            dq: random.joints(|i, unit| unit * speed(i)),
             interval_s: 0.002 * (1.0 + 0.4 * random.unit()),
             offset: 0.05 * random.unit(),
-            posture: random.joints(position),
+            posture: anywhere(&mut random),
         })
         .collect();
     let rest = Input {
@@ -131,8 +150,8 @@ pub fn states() -> Vec<Input> {
         [quarter; 7],
         [1e-310; 7],
         [1e-9, -1e-9, 1e-9, -1e-9, 1e-9, -1e-9, 1e-9],
-        std::array::from_fn(|i| position(i) + 0.19),
-        std::array::from_fn(|i| -position(i) - 0.19),
+        [f64::MAX; 7],
+        [f64::MIN; 7],
         [0.0, 0.611, 0.0, -1.396, 0.349, 1.047, 0.0],
     ];
     let speeds = [
@@ -143,7 +162,14 @@ pub fn states() -> Vec<Input> {
         std::array::from_fn(|i| speed(i) * 2.9),
         std::array::from_fn(|i| speed(i) * if i % 2 == 0 { -2.9 } else { 2.9 }),
     ];
-    for q in postures {
+    // As far as it is believed, or followed.
+    let within = |angles: [f64; 7], beyond: fn([f64; 2]) -> f64| {
+        std::array::from_fn(|i| {
+            let ([least, greatest], beyond) = (range(i), beyond(range(i)));
+            angles[i].clamp(least - beyond, greatest + beyond)
+        })
+    };
+    for q in postures.map(|q| within(q, |_| 0.19)) {
         for dq in speeds {
             for (interval_s, offset, far) in [
                 (0.002, 0.0, 0.0),
@@ -157,7 +183,7 @@ pub fn states() -> Vec<Input> {
                     dq,
                     interval_s,
                     offset,
-                    posture: [far; 7],
+                    posture: within([far; 7], |[least, greatest]| 0.49 * (greatest - least)),
                     ..rest
                 });
             }

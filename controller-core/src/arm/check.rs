@@ -4,8 +4,10 @@ use core::fmt;
 
 use crate::arm::limits::JointLimits;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
-use crate::arm::pose::Pose;
-use crate::ranges::{ANGLE_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, MASS_MIN, POSITION_MARGIN};
+use crate::arm::pose::{Pose, distortion};
+use crate::ranges::{
+    ANGLE_MAX, DISTORTION_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, MASS_MIN, POSITION_MARGIN,
+};
 
 /// Why parameter tables do not make a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +47,7 @@ pub enum ArmError {
     /// distribution of positive mass has this inertia. Then a mass matrix need
     /// not be positive definite.
     ImpossibleInertia {
-        /// Link (1..=7).
+        /// Link (1..=7), 0 for a tool.
         link: usize,
         /// Smallest leading minor of the matrix of second moments, normalised
         /// by its trace; must not be below 0.
@@ -85,20 +87,27 @@ impl fmt::Display for ArmError {
                 place(f, link)?;
                 write!(f, "{parameter} = {value}; allowed {min} to {max}")
             }
-            Self::ImpossibleInertia { link, value } => write!(
-                f,
-                "link {link}: inertia gives a negative second moment of mass ({value:e} of its \
-                 trace); it must be at least 0 (triangle inequality of the principal moments)"
-            ),
+            Self::ImpossibleInertia { link, value } => {
+                match link {
+                    0 => write!(f, "tool: ")?,
+                    _ => place(f, link)?,
+                }
+                write!(
+                    f,
+                    "inertia gives a negative second moment of mass ({value:e} of its trace); it \
+                     must be at least 0 (triangle inequality of the principal moments)"
+                )
+            }
         }
     }
 }
 
 impl core::error::Error for ArmError {}
 
-/// Second moment of mass about the centre of mass: tr(I)/2 1 - I.
-pub(super) fn second_moment(link: &LinkParameters) -> nalgebra::Matrix3<f64> {
-    let [xx, xy, xz, yy, yz, zz] = link.inertia;
+/// Second moment of mass about the centre of mass, tr(I)/2 1 - I, of the inertia I in the order
+/// of the tables.
+pub(super) fn second_moment(inertia: &[f64; 6]) -> nalgebra::Matrix3<f64> {
+    let [xx, xy, xz, yy, yz, zz] = *inertia;
     let half_trace = (xx + yy + zz) / 2.0;
     nalgebra::Matrix3::new(
         half_trace - xx,
@@ -151,17 +160,15 @@ fn joint_limits(limits: &JointLimits) -> Result<(), ArmError> {
     within(0, "limits.speed_share", limits.speed_share, [0.1, 1.0])
 }
 
-/// Rotations printed with ten digits pass; those with five do not.
-const DISTORTION_MAX: f64 = 1e-9;
-
-fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
+/// Whether a pose of the arm has the axes of a frame.
+pub(super) fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
     finite(0, shift, &pose.shift)?;
     finite(0, rotation, pose.rotation.as_flattened())?;
     let allowed = [0.0, DISTORTION_MAX];
     within(
         0,
-        "distortion of a rotation of base or flange",
-        pose.distortion(),
+        "distortion of a rotation of base, flange or tool",
+        distortion(&pose.rotation),
         allowed,
     )
 }
@@ -221,19 +228,21 @@ fn joint(number: usize, link: &LinkParameters) -> Result<(), ArmError> {
             within(number, parameter, value, [0.0, unbounded])?;
         }
     }
-    let value = smallest_minor(&second_moment(link));
+    possible(number, &link.inertia)
+}
+
+/// Whether a body can have this inertia.
+pub(super) fn possible(link: usize, inertia: &[f64; 6]) -> Result<(), ArmError> {
+    let value = smallest_minor(&second_moment(inertia));
     // Identified bodies sit on the border of the feasible set: allow the
     // rounding of their printed numbers.
     if value < -1e-9 {
-        return Err(ArmError::ImpossibleInertia {
-            link: number,
-            value,
-        });
+        return Err(ArmError::ImpossibleInertia { link, value });
     }
     Ok(())
 }
 
-fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), ArmError> {
+pub(super) fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), ArmError> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(&value) => Err(ArmError::NonFinite {
             link,
@@ -244,7 +253,7 @@ fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), Ar
     }
 }
 
-fn within(
+pub(super) fn within(
     link: usize,
     parameter: &'static str,
     value: f64,

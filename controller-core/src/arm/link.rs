@@ -1,4 +1,6 @@
-//! Links by number, and points fixed to them.
+//! Links by number; points and frames fixed to them.
+
+use crate::arm::pose::Pose;
 
 /// A link of the arm; link i moves with joint i. Of the seven there are, so that a
 /// link that does not exist cannot be written down.
@@ -49,6 +51,15 @@ impl Link {
     pub const fn number(self) -> usize {
         self as usize
     }
+
+    /// Its DH frame.
+    #[must_use]
+    pub const fn frame(self) -> LinkFrame {
+        LinkFrame {
+            link: self,
+            rotation: Pose::IDENTITY.rotation,
+        }
+    }
 }
 
 /// A point fixed to a link. Plain `f64` data.
@@ -59,6 +70,16 @@ pub struct LinkPoint {
     pub link: Link,
     /// Position \[m\] in the DH frame of that link.
     pub offset: [f64; 3],
+}
+
+/// A frame fixed to a link, as far as it turns. Plain `f64` data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(all(feature = "defmt", target_os = "none"), derive(defmt::Format))]
+pub struct LinkFrame {
+    /// Link that carries it.
+    pub link: Link,
+    /// Takes axes of the frame to those of the link's DH frame, by rows.
+    pub rotation: [[f64; 3]; 3],
 }
 
 /// A point of an arm with a name. Plain `f64` data.

@@ -162,7 +162,8 @@ impl<T: Real> LinkModel<T> {
         );
         let com =
             turn * nalgebra::Vector3::from(link.com) + nalgebra::Vector3::new(link.a, 0.0, link.d);
-        let s = turn * second_moment(link) * turn.transpose() + com * com.transpose() * link.mass;
+        let s = turn * second_moment(&link.inertia) * turn.transpose()
+            + com * com.transpose() * link.mass;
         let h = com * link.mass;
         Self {
             a: T::from_f64(link.a),

@@ -1,7 +1,7 @@
 //! The tables of an arm as plain data.
 
 use crate::arm::limits::JointLimits;
-use crate::arm::link::{Link, LinkPoint, NamedPoint};
+use crate::arm::link::{Link, LinkFrame, LinkPoint, NamedPoint};
 use crate::arm::pose::Pose;
 use crate::joint::DOF;
 
@@ -128,6 +128,15 @@ impl ArmParameters {
         LinkPoint {
             link: Link::L7,
             offset: self.flange.shift,
+        }
+    }
+
+    /// The frame of the flange, which turns with link 7.
+    #[must_use]
+    pub const fn flange_frame(&self) -> LinkFrame {
+        LinkFrame {
+            link: Link::L7,
+            rotation: self.flange.rotation,
         }
     }
 

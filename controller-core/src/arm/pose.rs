@@ -23,6 +23,23 @@ impl Pose {
         }
     }
 
+    /// Pose in the parent frame of what has the pose `inner` in this frame.
+    #[must_use]
+    pub fn carrying(&self, inner: &Self) -> Self {
+        Self {
+            rotation: self.turned(&inner.rotation),
+            shift: self.place(inner.shift),
+        }
+    }
+
+    /// Rotation in the parent frame of what is turned by `inner` in this frame.
+    #[must_use]
+    pub fn turned(&self, inner: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let [first, second, third] = inner;
+        self.rotation
+            .map(|[a, b, c]| core::array::from_fn(|i| a * first[i] + b * second[i] + c * third[i]))
+    }
+
     /// Where `point` \[m\] of the frame is in the parent frame \[m\].
     #[must_use]
     pub fn place(&self, point: [f64; 3]) -> [f64; 3] {
@@ -33,24 +50,24 @@ impl Pose {
         }
         placed
     }
+}
 
-    /// Largest entry of R^T R - 1: 0 where the axes are orthogonal and of length 1. More than
-    /// 1 where they are a mirror image.
-    pub(super) fn distortion(&self) -> f64 {
-        let rotation = nalgebra::Matrix3::from(self.rotation); // transposed: no matter
-        let gram = rotation.tr_mul(&rotation) - nalgebra::Matrix3::identity();
-        let mirrored = if rotation.determinant() > 0.0 {
-            0.0
+/// Largest entry of R^T R - 1: 0 where the axes are orthogonal and of length 1. More than
+/// 1 where they are a mirror image.
+pub(crate) fn distortion(rotation: &[[f64; 3]; 3]) -> f64 {
+    let rotation = nalgebra::Matrix3::from(*rotation); // transposed: no matter
+    let gram = rotation.tr_mul(&rotation) - nalgebra::Matrix3::identity();
+    let mirrored = if rotation.determinant() > 0.0 {
+        0.0
+    } else {
+        2.0
+    };
+    gram.iter().fold(mirrored, |most, entry| {
+        // Not lost in a maximum: NaN stays.
+        if entry.abs() <= most {
+            most
         } else {
-            2.0
-        };
-        gram.iter().fold(mirrored, |most, entry| {
-            // Not lost in a maximum: NaN stays.
-            if entry.abs() <= most {
-                most
-            } else {
-                entry.abs()
-            }
-        })
-    }
+            entry.abs()
+        }
+    })
 }

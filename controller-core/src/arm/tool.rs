@@ -2,9 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::link::{Link, LinkPoint};
+use crate::arm::check::{self, ArmError};
+use crate::arm::link::{Link, LinkFrame, LinkPoint};
 use crate::arm::parameters::ArmParameters;
 use crate::arm::pose::Pose;
+use crate::ranges::MASS_MIN;
 
 /// A tool, gripper or load fixed to the flange. Plain `f64` data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +20,26 @@ pub struct Tool {
     /// Inertia about the centre of mass \[kg m2\], axes of the tool frame, in the order
     /// Ixx Ixy Ixz Iyy Iyz Izz.
     pub inertia: [f64; 6],
+}
+
+impl Tool {
+    /// Whether a body can have these numbers, or without mass a frame.
+    ///
+    /// # Errors
+    /// [`ArmError`] names the first number that cannot be, with link 0.
+    pub fn validate(&self) -> Result<(), ArmError> {
+        let unbounded = f64::INFINITY;
+        check::pose(&self.pose, ["tool.rotation", "tool.shift"])?;
+        check::finite(0, "tool.mass", &[self.mass])?;
+        check::finite(0, "tool.com", &self.com)?;
+        check::finite(0, "tool.inertia", &self.inertia)?;
+        check::within(0, "tool.mass [kg]", self.mass, [0.0, unbounded])?;
+        if self.mass == 0.0 && self.inertia == [0.0; 6] {
+            return Ok(());
+        }
+        check::within(0, "tool.mass [kg]", self.mass, [MASS_MIN, unbounded])?;
+        check::possible(0, &self.inertia)
+    }
 }
 
 impl ArmParameters {
@@ -34,7 +56,8 @@ impl ArmParameters {
         arm.damping_postures = &[];
         arm.limits = None;
         let [.., link] = &mut arm.links;
-        let turn = rotation(&self.flange) * rotation(&tool.pose);
+        // nalgebra takes columns.
+        let turn = Matrix3::from(self.tool_frame(tool).rotation).transpose();
         let own_com = Vector3::from(link.com);
         let tool_com = Vector3::from(self.tool_point(tool).offset) + turn * Vector3::from(tool.com);
         let own = Body {
@@ -63,6 +86,15 @@ impl ArmParameters {
             offset: self.flange.place(tool.pose.shift),
         }
     }
+
+    /// A tool's frame, which turns with link 7.
+    #[must_use]
+    pub fn tool_frame(&self, tool: &Tool) -> LinkFrame {
+        LinkFrame {
+            link: Link::L7,
+            rotation: self.flange.turned(&tool.pose.rotation),
+        }
+    }
 }
 
 /// A body in some frame: mass \[kg\], centre of mass \[m\], inertia about it \[kg m2\].
@@ -87,11 +119,6 @@ impl Body {
             inertia: self.inertia + other.inertia + apart * reduced,
         }
     }
-}
-
-fn rotation(pose: &Pose) -> Matrix3<f64> {
-    // nalgebra takes columns.
-    Matrix3::from(pose.rotation).transpose()
 }
 
 fn matrix(&[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> Matrix3<f64> {

@@ -61,7 +61,7 @@ fn usable<T: Real>(
                 let most = T::from_f64(acceleration);
                 bounded(Quantity::TargetAcceleration, index, ddx, most)?;
             }
-            (Target::Orientation { q, w, dw }, LevelPoint::Orientation(_)) => {
+            (Target::Orientation { q, w, dw }, LevelPoint::Orientation(..)) => {
                 let ([_, speed], [_, acceleration]) = (TARGET_SPEED_MAX, TARGET_ACCELERATION_MAX);
                 let [low, high] = QUATERNION_NORMS.map(|norm| T::from_f64(norm * norm));
                 within(Quantity::Orientation, index, q.dot(q), low, high)?;
@@ -69,7 +69,7 @@ fn usable<T: Real>(
                 let most = T::from_f64(acceleration);
                 bounded(Quantity::TargetAngularAcceleration, index, dw, most)?;
             }
-            (Target::Position { .. }, LevelPoint::Orientation(_)) => {
+            (Target::Position { .. }, LevelPoint::Orientation(..)) => {
                 return Err(wrong_kind(index, POSITION_CODE, ORIENTATION_CODE));
             }
             (Target::Orientation { .. }, LevelPoint::Position(..)) => {

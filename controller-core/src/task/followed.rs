@@ -216,7 +216,7 @@ impl Kind {
     fn of<T: Real>(tracked: &LevelPoint<T>) -> Self {
         match tracked {
             LevelPoint::Position(..) => Self::Position,
-            LevelPoint::Orientation(_) => Self::Orientation,
+            LevelPoint::Orientation(..) => Self::Orientation,
         }
     }
 

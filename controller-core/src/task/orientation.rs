@@ -80,6 +80,19 @@ pub fn of_rotation<T: Real>(r: &Matrix3<T>) -> Quaternion<T> {
     Quaternion::from(best) * (T::HALF / largest.larger(T::HALF).square_root())
 }
 
+/// The orientation of a frame that is turned by `turn` in a link, whose DH frame is turned by
+/// `link` in the base-plate frame: a unit quaternion in base-plate axes.
+#[must_use]
+#[inline]
+pub fn of_frame<T: Real>(link: &Matrix3<T>, turn: &Quaternion<T>) -> Quaternion<T> {
+    let own = of_rotation(link);
+    // The DH frame itself stays as it is to the last bit, signs of zeros too.
+    if *turn == identity() {
+        return own;
+    }
+    product(&own, turn)
+}
+
 /// The orientation error of the law: the chord 2 sin(theta / 2) of the angle theta
 /// between the orientations, times the axis about which the actual one must turn the
 /// short way; base-plate axes, \[1\]. It is twice the vector part of

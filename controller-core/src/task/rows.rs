@@ -71,9 +71,9 @@ impl<T: Real> TaskRows<T> {
                     let rows = kinematics.point_jacobian(*link, &motion);
                     self.push(number, level.axes, &commanded, joints, &rows);
                 }
-                LevelPoint::Orientation(link) => {
+                LevelPoint::Orientation(link, turn) => {
                     let motion = kinematics.link(*link);
-                    let actual = orientation::of_rotation(&motion.rotation);
+                    let actual = orientation::of_frame(&motion.rotation, turn);
                     let error = orientation::chord(&desired.place, &actual);
                     let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
                     let rows = kinematics.angular_jacobian(*link);

@@ -1,13 +1,14 @@
 //! Tasks as plain data: what a priority level tracks, and the set of all levels.
 
 use super::level_limits::{LevelFilters, LevelLimits, length};
-use super::{Axes, Target, orientation};
+use super::orientation::{self, Quaternion};
+use super::{Axes, Target};
 use crate::arm::kinematics::{Kinematics, PointMotion};
-use crate::arm::{ArmModel, Link, LinkPoint};
+use crate::arm::{ArmModel, Link, LinkFrame, LinkPoint, distortion};
 use crate::error::{ConfigError, Gain};
 use crate::gain::{self, diagonal};
 use crate::joint::{Matrix3, Vector3, zeros};
-use crate::ranges::{MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M, REACH_MARGIN_M};
+use crate::ranges::{DISTORTION_MAX, MAX_LEVELS, MAX_ROWS, POINT_OFFSET_MAX_M, REACH_MARGIN_M};
 use crate::real::Real;
 
 /// What a task tracks.
@@ -16,8 +17,8 @@ use crate::real::Real;
 pub enum Tracked {
     /// The position of a point of the arm, along the axes of the task.
     Position(LinkPoint),
-    /// The orientation of a link's DH frame, about the axes of the task.
-    Orientation(Link),
+    /// The orientation of a frame of the arm, about the axes of the task.
+    Orientation(LinkFrame),
 }
 
 /// Gains of a task, by rows; they act on acceleration. Only the rows and columns of
@@ -50,7 +51,7 @@ impl TaskGains {
 /// A tracking task, one priority level. Plain `f64` data, usable as a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Task {
-    /// The point or link.
+    /// The point or frame.
     pub tracked: Tracked,
     /// Base-plate axes that are controlled: along them, or for an orientation about
     /// them.
@@ -74,11 +75,11 @@ impl Task {
         }
     }
 
-    /// Tracks the orientation of the DH frame of `link` about `axes`.
+    /// Tracks the orientation of `frame` about `axes`.
     #[must_use]
-    pub const fn orientation(link: Link, axes: Axes, gains: TaskGains) -> Self {
+    pub const fn orientation(frame: LinkFrame, axes: Axes, gains: TaskGains) -> Self {
         Self {
-            tracked: Tracked::Orientation(link),
+            tracked: Tracked::Orientation(frame),
             axes,
             gains,
             limits: None,
@@ -86,10 +87,18 @@ impl Task {
     }
 
     fn validate(&self, level: usize) -> Result<(), ConfigError> {
-        if let Tracked::Position(point) = &self.tracked {
-            for &value in &point.offset {
-                if !(-POINT_OFFSET_MAX_M..=POINT_OFFSET_MAX_M).contains(&value) {
-                    return Err(ConfigError::PointOffset { level, value });
+        match &self.tracked {
+            Tracked::Position(point) => {
+                for &value in &point.offset {
+                    if !(-POINT_OFFSET_MAX_M..=POINT_OFFSET_MAX_M).contains(&value) {
+                        return Err(ConfigError::PointOffset { level, value });
+                    }
+                }
+            }
+            Tracked::Orientation(frame) => {
+                let value = distortion(&frame.rotation);
+                if !(0.0..=DISTORTION_MAX).contains(&value) {
+                    return Err(ConfigError::FrameRotation { level, value });
                 }
             }
         }
@@ -116,7 +125,7 @@ impl TaskSet {
     ///
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be: too many levels or rows, a
-    /// point too far from its link, gains that are not finite, symmetric and positive
+    /// point too far from its link, a frame that is distorted, gains that are not finite, symmetric and positive
     /// definite.
     pub fn new(tasks: &[Task]) -> Result<Self, ConfigError> {
         Self::count(tasks)?;
@@ -128,7 +137,8 @@ impl TaskSet {
 
     /// The same without a look at points and gains.
     pub(crate) fn unvalidated(tasks: &[Task]) -> Result<Self, ConfigError> {
-        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(0.0, 0.0));
+        const UNUSED: Task =
+            Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let count = Self::count(tasks)?;
         let mut tasks = tasks.iter();
         Ok(Self {
@@ -162,8 +172,8 @@ impl TaskSet {
 pub(crate) enum LevelPoint<T: Real> {
     /// A point with this offset \[m\] in the DH frame of its link.
     Position(Link, Vector3<T>),
-    /// The DH frame of a link.
-    Orientation(Link),
+    /// A frame that is turned so in the DH frame of its link.
+    Orientation(Link, Quaternion<T>),
 }
 
 impl<T: Real> LevelPoint<T> {
@@ -178,10 +188,10 @@ impl<T: Real> LevelPoint<T> {
                     ddx: zeros(),
                 }
             }
-            Self::Orientation(link) => {
+            Self::Orientation(link, turn) => {
                 let motion = kinematics.link(*link);
                 Target::Orientation {
-                    q: orientation::of_rotation(&motion.rotation),
+                    q: orientation::of_frame(&motion.rotation, turn),
                     w: motion.angular_velocity,
                     dw: zeros(),
                 }
@@ -222,7 +232,12 @@ impl<T: Real> Level<T> {
                 reach = arm.reach(&LinkPoint { link, offset }) + T::from_f64(REACH_MARGIN_M);
                 LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
             }
-            Tracked::Orientation(link) => LevelPoint::Orientation(link),
+            Tracked::Orientation(LinkFrame { link, rotation }) => {
+                // nalgebra takes columns.
+                let rotation = nalgebra::Matrix3::from(rotation).transpose();
+                let turn = orientation::unit(&orientation::of_rotation(&rotation));
+                LevelPoint::Orientation(link, turn.map(T::from_f64))
+            }
         };
         // The others are not read: whatever stands there stays out.
         let used = |gain: &[[f64; 3]; 3]| {
@@ -283,7 +298,8 @@ pub(crate) struct Levels<T: Real> {
 
 impl<T: Real> Levels<T> {
     pub fn new(set: &TaskSet, arm: &ArmModel<T>) -> Self {
-        const UNUSED: Task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(1.0, 1.0));
+        const UNUSED: Task =
+            Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(1.0, 1.0));
         let mut start = 0;
         let mut tasks = set.tasks().iter();
         let mut next = |number| {

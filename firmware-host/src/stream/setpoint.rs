@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use arms::LWR_IV;
 use cell::ranges::{QUATERNION_NORM, Range};
+use cell::scenario::{EquippedArm, TOOL_POINT};
 use controller_core::joint::Vector3;
 use controller_core::ranges::MAX_LEVELS;
 use controller_core::task::Tracked;
@@ -13,8 +13,8 @@ use controller_core::{Target, Task, TaskSet};
 /// A vector of a level: its name, the range of its entries, its unit.
 type Quantity = (&'static str, Range<f64>, &'static str);
 
-/// Of a position. The flange is at most 1.2 m from the base and moves at 3.7 m/s with all
-/// joints at their data-sheet speed: what is beyond is another unit, not a motion. From
+/// Of a position. The flange of an LWR IV+ is at most 1.2 m from the base and moves at
+/// 3.7 m/s with all joints at their data-sheet speed, other arms of this size hardly more: what is beyond is another unit, not a motion. From
 /// rest to full speed in 50 ms is as quick as tasks with a K_p of 400 1/s2 answer.
 const POSITION: [Quantity; 3] = [
     ("position", Range::new(-3.0, 3.0), "m"),
@@ -22,8 +22,8 @@ const POSITION: [Quantity; 3] = [
     ("acceleration", Range::new(-100.0, 100.0), "m/s2"),
 ];
 
-/// Of an orientation, besides the quaternion. All joints at their data-sheet speed about
-/// one axis come to 18.3 rad/s; the acceleration is full speed in 40 ms.
+/// Of an orientation, besides the quaternion. All joints of an LWR IV+ at their data-sheet
+/// speed about one axis come to 18.3 rad/s; the acceleration is full speed in 40 ms.
 const ROTATION: [Quantity; 2] = [
     ("angular velocity", Range::new(-20.0, 20.0), "rad/s"),
     ("angular acceleration", Range::new(-500.0, 500.0), "rad/s2"),
@@ -43,11 +43,12 @@ pub struct Setpoint {
 }
 
 impl Setpoint {
-    /// Reads a datagram for levels that have these tasks.
+    /// Reads a datagram for levels that have these tasks of `arm`, whose names of points
+    /// errors use.
     ///
     /// # Errors
     /// What is wrong with it, in one line.
-    pub fn parse(text: &str, tasks: &TaskSet) -> Result<Self, String> {
+    pub fn parse(text: &str, tasks: &TaskSet, arm: &EquippedArm) -> Result<Self, String> {
         let mut numbers = [0.0; ORIENTATION_NUMBERS * MAX_LEVELS];
         let mut count = 0;
         let words = text.split([' ', ',', '\t', '\n', '\r']);
@@ -61,14 +62,14 @@ impl Setpoint {
             }
             count += 1;
         }
-        let given = levels(count, tasks)?;
+        let given = levels(count, tasks, arm)?;
         let mut setpoint = Self {
             targets: [Target::Hold; MAX_LEVELS],
             count: given,
         };
         let mut rest = numbers.as_slice();
         let places = setpoint.targets.iter_mut().take(given);
-        for (target, level) in places.zip(Level::of(tasks)) {
+        for (target, level) in places.zip(Level::of(tasks, arm)) {
             let (own, others) = rest.split_at_checked(level.length()).unwrap_or_default();
             *target = level.target(own)?;
             rest = others;
@@ -84,12 +85,12 @@ impl Setpoint {
 }
 
 /// How many levels `count` numbers are for.
-fn levels(count: usize, tasks: &TaskSet) -> Result<usize, String> {
+fn levels(count: usize, tasks: &TaskSet, arm: &EquippedArm) -> Result<usize, String> {
     // Nine for each level, as if an orientation were a position too: right where there is
     // none among them. Otherwise the first one is what is wrong, not where numbers run out.
     if count.is_multiple_of(POSITION_NUMBERS) && count > 0 {
         let given = count / POSITION_NUMBERS;
-        let mut among = Level::of(tasks).take(given);
+        let mut among = Level::of(tasks, arm).take(given);
         if let Some(level) = among.find(|level| level.length() != POSITION_NUMBERS)
             && given <= tasks.tasks().len()
         {
@@ -97,7 +98,7 @@ fn levels(count: usize, tasks: &TaskSet) -> Result<usize, String> {
         }
     }
     let (mut rest, last) = (count, tasks.tasks().len());
-    for level in Level::of(tasks) {
+    for level in Level::of(tasks, arm) {
         let length = level.length();
         if rest < length || (level.number == last && rest > length) {
             return Err(level.miscounted(rest));
@@ -116,12 +117,13 @@ struct Level<'a> {
     /// Counted from 1.
     number: usize,
     task: &'a Task,
+    arm: &'a EquippedArm,
 }
 
 impl<'a> Level<'a> {
-    fn of(tasks: &'a TaskSet) -> impl Iterator<Item = Self> {
+    fn of(tasks: &'a TaskSet, arm: &'a EquippedArm) -> impl Iterator<Item = Self> {
         let tasks = (1..).zip(tasks.tasks());
-        tasks.map(|(number, task)| Self { number, task })
+        tasks.map(move |(number, task)| Self { number, task, arm })
     }
 
     /// Numbers in a datagram.
@@ -192,13 +194,14 @@ impl fmt::Display for Level<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "level {} ", self.number)?;
         match &self.task.tracked {
-            Tracked::Position(point) => {
-                match LWR_IV.points.iter().find(|named| named.point == *point) {
-                    Some(named) => write!(f, "(position of {})", named.name),
-                    None => write!(f, "(position of a point of link {})", point.link.number()),
-                }
-            }
-            Tracked::Orientation(link) => write!(f, "(orientation of link {})", link.number()),
+            Tracked::Position(point) => match self.arm.name_of(point) {
+                Some(name) => write!(f, "(position of {name})"),
+                None => write!(f, "(position of a point of link {})", point.link.number()),
+            },
+            Tracked::Orientation(frame) => match self.arm.tool_frame() {
+                Some(tool) if tool == *frame => write!(f, "(orientation of {TOOL_POINT})"),
+                _ => write!(f, "(orientation of link {})", frame.link.number()),
+            },
         }
     }
 }
@@ -211,7 +214,7 @@ pub(super) mod tests {
 
     const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
     const FLANGE: Task = Task::position(LWR_IV_FLANGE, Axes::XYZ, GAINS);
-    const LINK_7: Task = Task::orientation(Link::L7, Axes::XYZ, GAINS);
+    const LINK_7: Task = Task::orientation(Link::L7.frame(), Axes::XYZ, GAINS);
     const HEIGHT: Task = Task::position(
         LinkPoint {
             link: Link::L3,
@@ -230,6 +233,10 @@ pub(super) mod tests {
         set(&[FLANGE, LINK_7, HEIGHT])
     }
 
+    fn setpoint(text: &str, tasks: &TaskSet) -> Result<Setpoint, String> {
+        Setpoint::parse(text, tasks, &EquippedArm::of(&LWR_IV))
+    }
+
     fn zeros(count: usize) -> String {
         "0 ".repeat(count)
     }
@@ -246,7 +253,7 @@ pub(super) mod tests {
     }
 
     fn refusal(text: &str, tasks: &TaskSet) -> String {
-        Setpoint::parse(text, tasks).expect_err(text)
+        setpoint(text, tasks).expect_err(text)
     }
 
     #[test]
@@ -254,7 +261,7 @@ pub(super) mod tests {
         let text = "0.5 0 0.4, 0.1 0 0, 0 0 -1\n\
                     0 0 -0.6 0.8, 1 2 3, 4 5 6\n\
                     0 0 1\t0 0 2\r\n0 0 3";
-        let setpoint = Setpoint::parse(text, &three()).expect("all levels");
+        let setpoint = setpoint(text, &three()).expect("all levels");
         let expected = [
             Target::Position {
                 x: [0.5, 0.0, 0.4].into(),
@@ -292,7 +299,7 @@ pub(super) mod tests {
             let mut counts = Vec::new();
             for given in 1..=MAX_LEVELS {
                 let text = levels[..given].concat();
-                let setpoint = Setpoint::parse(&text, &tasks).expect("the first levels");
+                let setpoint = setpoint(&text, &tasks).expect("the first levels");
                 assert_eq!(setpoint.targets().len(), given);
                 counts.push(text.split_whitespace().count());
             }
@@ -400,7 +407,7 @@ pub(super) mod tests {
         let limits = [(0, 3.0), (3, 5.0), (6, 100.0), (13, 20.0), (16, 500.0)];
         let parse = |numbers: &[f64; 19]| {
             let words = numbers.map(|number| number.to_string());
-            Setpoint::parse(&words.join(" "), &tasks)
+            setpoint(&words.join(" "), &tasks)
         };
         for (place, limit) in limits.into_iter().flat_map(|(from, limit)| {
             let signs = [limit, -limit].into_iter();
@@ -424,7 +431,7 @@ pub(super) mod tests {
         let tasks = set(&[LINK_7]);
         let parse = |q: [f64; 4]| {
             let words = q.map(|number| number.to_string()).join(" ");
-            Setpoint::parse(&format!("{words} {}", zeros(6)), &tasks)
+            setpoint(&format!("{words} {}", zeros(6)), &tasks)
         };
         for norm in [0.5, 1.0, 1.7, 2.0] {
             for unit in [[1.0, 0.0, 0.0, 0.0], [0.5, -0.5, 0.5, -0.5]] {

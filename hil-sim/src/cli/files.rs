@@ -59,8 +59,8 @@ impl Files {
     ///
     /// # Errors
     /// The disk.
-    pub fn push(&mut self, scenario: &Scenario, instant: &Sample) -> io::Result<()> {
-        self.recording.push(scenario, instant);
+    pub fn push(&mut self, instant: &Sample) -> io::Result<()> {
+        self.recording.push(instant);
         self.trace.push(instant)
     }
 

@@ -7,8 +7,9 @@ use controller_core::Controller;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
 use crate::plant::PlantOptions;
+use crate::plant::friction::FrictionLaw;
 use cell::names::PlantKind;
-use cell::scenario::PostureSpec;
+use cell::scenario::{PostureSpec, Scenario};
 use cell::terminal::tell;
 use record::run::Sample;
 
@@ -18,6 +19,7 @@ const AHEAD_S: f64 = 20.0;
 /// Every note on this run.
 pub fn tell_all(experiment: &Experiment, controller: &Controller<f64>) {
     warn_of_damping(experiment, controller);
+    say_what_is_unknown(&experiment.scenario, experiment.plant);
     if let Ok(Some(note)) = drift(experiment, controller) {
         tell(format_args!("note: {note}"));
     }
@@ -30,12 +32,24 @@ fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
     };
     let bound = config.damping_bound();
     let mode = controller.fastest_mode();
+    let arm = experiment.scenario.arm();
     let value = mode.rate * experiment.scenario.cycle_s();
     if value > bound / 2.0 && experiment.controller == TorqueLaw::Hierarchical.into() {
         tell(format_args!(
             "note: the null-space damping uses {value:.2} of the {bound} that the cycle carries \
-             (joint {}, stretched postures)",
-            mode.joint
+             ({}, stretched postures)",
+            arm.joint(mode.joint - 1)
+        ));
+    }
+}
+
+/// A realistic plant is less so where the table of its arm has no friction.
+pub fn say_what_is_unknown(scenario: &Scenario, plant: PlantKind) {
+    let arm = scenario.arm().parameters;
+    if plant == PlantKind::Realistic && FrictionLaw::of(&arm).is_none() {
+        tell(format_args!(
+            "note: friction of {} is not known: the plant has none",
+            arm.name
         ));
     }
 }
@@ -60,12 +74,13 @@ fn drift(experiment: &Experiment, controller: &Controller<f64>) -> io::Result<Op
         ..experiment.clone()
     };
     free.scenario.duration_s = free.scenario.duration_s.min(AHEAD_S);
+    let arm = experiment.scenario.arm();
     let [least, greatest] = controller.arm().position_range();
     let mut beyond = None;
     let look = |sample: &Sample| {
         let q = &sample.state.q;
         let left = (0..q.len()).find(|&i| q[i] < least[i] || q[i] > greatest[i]);
-        beyond = beyond.or(left.map(|index| (index + 1, sample.t_s)));
+        beyond = beyond.or(left.map(|index| (arm.joint(index), sample.t_s)));
         Ok(())
     };
     let summary = free.run(controller, look, |_| ())?;
@@ -75,12 +90,12 @@ fn drift(experiment: &Experiment, controller: &Controller<f64>) -> io::Result<Op
     let most = (0..travel.len()).max_by(|&a, &b| travel[a].total_cmp(&travel[b]));
     let most = most.unwrap_or_default();
     let range = beyond.map_or(String::new(), |(joint, t_s)| {
-        format!("; joint {joint} leaves its range at {t_s:.1} s")
+        format!("; {joint} leaves its range at {t_s:.1} s")
     });
     Ok(Some(format!(
-        "posture {posture} drifts: on an ideal arm without contacts joint {} travels {:.0} deg \
-         in {end_s:.1} s{range}",
-        most + 1,
+        "posture {posture} drifts: on an ideal arm without contacts {} travels {:.0} deg in \
+         {end_s:.1} s{range}",
+        arm.joint(most),
         travel[most],
     )))
 }

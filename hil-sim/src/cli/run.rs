@@ -31,7 +31,7 @@ const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct RunOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file, which says arm, mount and tool
     scenario: String,
     /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
@@ -241,7 +241,7 @@ fn execute(
     let mut progress = Progress::new(experiment.controller.name());
     let written = experiment.run(
         controller,
-        |instant| files.push(scenario, instant),
+        |instant| files.push(instant),
         |share| progress.show(share),
     );
     progress.clear();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::files::{Files, announce};
+use super::notes;
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
 use crate::output::Folder;
@@ -54,7 +55,7 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: start, contacts, what is judged
+    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: arm, start, contacts, what is judged
     #[arg(long, default_value = "two-level")]
     scenario: String,
     /// The arm: ideal, realistic
@@ -218,9 +219,10 @@ impl ServeOptions {
              release, drives off|on, quit",
             service.client
         ));
+        notes::say_what_is_unknown(&scenario, setup.plant);
         let mut operator = Operator::at_the_terminal();
         let mut robot = Robot::new(setup);
-        let mut sink = |instant: &Sample| files.push(&scenario, instant);
+        let mut sink = |instant: &Sample| files.push(instant);
         let realtime = (!service.lockstep).then(|| Realtime::ask_without_memory(self.cpu));
         if let Some(realtime) = &realtime {
             tell(realtime.line());

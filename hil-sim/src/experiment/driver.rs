@@ -1,7 +1,6 @@
 //! What a controller makes of a measurement: torques for the motors, or positions for the
 //! robot's own position controller.
 
-use controller_core::arm::ArmParameters;
 use controller_core::cycle::Data;
 use controller_core::fault::Mode;
 use controller_core::joint::{JointState, JointVector};
@@ -191,13 +190,13 @@ pub(super) struct PositionDriver {
 impl PositionDriver {
     /// At the start of a scenario, commands act `dead_cycles` later.
     pub fn new(scenario: &Scenario, dead_cycles: usize) -> Result<Self, Invalid> {
-        let (arm, start): (&ArmParameters, _) = (scenario.arm(), scenario.start());
+        let (arm, start) = (scenario.arm().parameters, scenario.start());
         let config = ResolverConfig {
             tasks: scenario.controller_config(0)?.tasks,
             gain: RESOLVER_GAIN,
             cycle_s: scenario.cycle_s(),
         };
-        let resolver = Resolver::new(arm, &config)
+        let resolver = Resolver::new(&arm, &config)
             .map_err(|error| Invalid::line(error).within(&scenario.name))?;
         Ok(Self {
             resolver,
@@ -205,7 +204,7 @@ impl PositionDriver {
             cycle_s: scenario.cycle_s(),
             reached: start,
             way: DeadTime::new(dead_cycles, start),
-            model: RobotModel::new(arm),
+            model: RobotModel::new(&arm),
             torque_limit: JointVector::from_fn(|i, _| arm.links[i].torque_limit),
         })
     }

@@ -1,7 +1,5 @@
 //! The state to explain, as JSON.
 
-use arms::LWR_IV;
-use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, Vector3};
 use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
@@ -13,7 +11,7 @@ use cell::invalid::Invalid;
 use cell::names::Named;
 use cell::ranges::{LEVELS, QUATERNION_NORM, ROWS, Range};
 use cell::reader;
-use cell::scenario::{PointSpec, TaskSpec};
+use cell::scenario::{EquippedArm, Mount, PointSpec, TaskSpec, ToolSpec};
 
 /// K_I \[1/s\].
 const OBSERVER_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);
@@ -25,8 +23,14 @@ const INTERVAL_S: Range<f64> = Range::above(0.0, 10.0);
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
-    /// Name of the arm.
+    /// Name of the arm, one of the crate `arms`.
     pub robot: String,
+    /// How it is mounted; as its table says unless given.
+    #[serde(default)]
+    pub mount: Option<Mount>,
+    /// What it carries at its flange.
+    #[serde(default)]
+    pub tool: Option<ToolSpec>,
     /// q \[rad\].
     pub q: [f64; DOF],
     /// dq \[rad/s\].
@@ -118,12 +122,10 @@ impl Input {
     }
 
     fn validate(&self) -> Result<(), Invalid> {
-        if self.robot != LWR_IV.name {
-            return Err(Invalid::name("robot", &self.robot, &[LWR_IV.name]));
-        }
-        for (joint, (&q, link)) in (1..).zip(self.q.iter().zip(&LWR_IV.links)) {
+        let arm = self.arm()?;
+        for (&q, link) in self.q.iter().zip(&arm.parameters.links) {
             let [min, max] = link.position_range;
-            Range::new(min, max).check(format_args!("q of joint {joint}"), q)?;
+            Range::new(min, max).check(format_args!("q of {}", link.name), q)?;
         }
         if let Some(name) = &self.controller {
             TorqueLaw::from_name(name)?;
@@ -134,7 +136,7 @@ impl Input {
         let mut rows = 0;
         for (index, level) in self.levels.iter().enumerate() {
             rows += level
-                .validate()
+                .validate(&arm)
                 .map_err(|error| error.in_list("levels", index))?;
         }
         if !ROWS.contains(rows) {
@@ -149,10 +151,12 @@ impl Input {
         Ok(())
     }
 
-    /// Tables of the arm.
-    #[must_use]
-    pub fn arm(&self) -> &'static ArmParameters {
-        &LWR_IV
+    /// The arm as it stands.
+    ///
+    /// # Errors
+    /// What of robot, mount and tool cannot be used.
+    pub fn arm(&self) -> Result<EquippedArm, Invalid> {
+        EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
     }
 
     /// The law.
@@ -162,10 +166,10 @@ impl Input {
         TorqueLaw::from_name(name).unwrap_or(TorqueLaw::Hierarchical)
     }
 
-    /// The core's tasks and their targets.
+    /// The core's tasks for `arm` and their targets.
     #[must_use]
-    pub fn tasks(&self) -> (Vec<Task>, Vec<Target<f64>>) {
-        self.levels.iter().map(Level::task).unzip()
+    pub fn tasks(&self, arm: &EquippedArm) -> (Vec<Task>, Vec<Target<f64>>) {
+        self.levels.iter().map(|level| level.task(arm)).unzip()
     }
 }
 
@@ -180,8 +184,8 @@ impl ObserverStep {
 
 impl Level {
     /// Checks point, axes and shapes; gives the number of rows.
-    fn validate(&self) -> Result<usize, Invalid> {
-        self.point.validate()?;
+    fn validate(&self, arm: &EquippedArm) -> Result<usize, Invalid> {
+        self.point.validate(arm)?;
         let Some(axes) = Axes::from_name(&self.axes) else {
             return Err(Invalid::new(
                 "axes",
@@ -218,7 +222,7 @@ impl Level {
         Ok(rows)
     }
 
-    fn task(&self) -> (Task, Target<f64>) {
+    fn task(&self, arm: &EquippedArm) -> (Task, Target<f64>) {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |values: &[f64]| {
             let mut values = values.iter();
@@ -231,11 +235,10 @@ impl Level {
             })
         };
         let gains = TaskGains::diagonal(spread(&self.kp), spread(&self.kd));
-        let point = self.point.resolve();
         let vector = |values: &[f64]| Vector3::from(spread(values));
         match self.task {
             TaskSpec::Position => (
-                Task::position(point, axes, gains),
+                Task::position(self.point.resolve(arm), axes, gains),
                 Target::Position {
                     x: vector(&self.x),
                     dx: vector(&self.dx),
@@ -243,7 +246,7 @@ impl Level {
                 },
             ),
             TaskSpec::Orientation => (
-                Task::orientation(point.link, axes, gains),
+                Task::orientation(self.point.frame(arm), axes, gains),
                 Target::Orientation {
                     q: Quaternion::from_iterator(self.x.iter().copied().chain([0.0; 4]).take(4)),
                     w: vector(&self.dx),

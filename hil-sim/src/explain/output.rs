@@ -1,7 +1,7 @@
 //! Everything the law computed, as JSON.
 
 use controller_core::cycle::Data;
-use controller_core::joint::{DOF, JointMatrix, JointVector};
+use controller_core::joint::{DOF, JointMatrix, JointVector, Matrix3};
 use controller_core::task::{Tracked, orientation};
 use controller_core::{LinkPoint, Task};
 use serde::Serialize;
@@ -92,8 +92,9 @@ impl LevelOutput {
                     .map(|axis| position[axis])
                     .collect()
             }
-            Tracked::Orientation(link) => {
-                let rotation = data.kinematics.link(link).rotation;
+            Tracked::Orientation(frame) => {
+                let rotation = data.kinematics.link(frame.link).rotation
+                    * Matrix3::from(frame.rotation).transpose();
                 orientation::of_rotation(&rotation).as_slice().to_vec()
             }
         };

@@ -174,7 +174,8 @@ fn attribution(results: &Results) -> Figure {
                 let angle = outcome.recording.q_deg(joint);
                 (outcome.recording).line(controller.name(), angle, Style::solid(k))
             });
-        let label = format!("joint {} [deg]", joint + 1);
+        let name = outcomes[0].1.recording.arm().joint(joint);
+        let label = format!("{name} [deg]");
         let panel = Panel::new(label, 130.0, Scale::Linear, lines.collect());
         chart.panels.push(panel);
     }

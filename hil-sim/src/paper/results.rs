@@ -156,7 +156,7 @@ fn execute(run: &Planned) -> Result<Outcome, Invalid> {
     let mut recording = Recording::new(scenario, experiment.contacts);
     let record = |sample: &Sample| {
         if experiment.seed == 1 {
-            recording.push(scenario, sample);
+            recording.push(sample);
         }
         Ok(())
     };

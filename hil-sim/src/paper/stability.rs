@@ -15,7 +15,6 @@
 //!   q~* the distance from the integrated posture (51), coupled form; its
 //!   derivative is -n^T D n.
 
-use arms::LWR_IV;
 use controller_core::cycle::stages::StageName;
 use controller_core::cycle::{Data, Input};
 use controller_core::joint::{JointVector, Vector3};
@@ -102,9 +101,10 @@ fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
     if kind == Kind::NullSpace {
         config.null_space.posture = Posture::IntegralCoupled;
     }
-    let controller = Controller::exact(&LWR_IV, &config).map_err(Invalid::line)?;
+    let arm = scenario.arm().parameters;
+    let controller = Controller::exact(&arm, &config).map_err(Invalid::line)?;
     let cycle_s = scenario.cycle_s();
-    let mut plant = Plant::new(PlantKind::Ideal, &LWR_IV, scenario.start(), cycle_s, 1);
+    let mut plant = Plant::new(PlantKind::Ideal, &arm, scenario.start(), cycle_s, 1);
     let mut state = State::new();
     let external = if kind == Kind::WithResidual {
         JointVector::from(EXTERNAL_TORQUE)

@@ -1,10 +1,12 @@
 //! One step of an arm whose joints have friction, stick, are elastic, or are held by
 //! springs of the robot's own.
 
+use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointMatrix, JointState, JointVector};
 
+use super::actuators::Actuators;
 use super::elastic::{Elastic, Elimination};
-use super::friction::Friction;
+use super::friction::{Friction, FrictionLaw};
 use super::impedance::Impedance;
 use super::model::PlantModel;
 use super::options::PlantOptions;
@@ -31,18 +33,27 @@ impl Drive {
         }
     }
 
-    /// Drive of `model` at rest at `q0` \[rad\], with what `options` ask for. The
-    /// springs of elastic joints carry the arm's weight.
-    pub fn realistic(model: &PlantModel, q0: &JointVector<f64>, options: &PlantOptions) -> Self {
+    /// Drive of `model` at rest at `q0` \[rad\], with the friction and size of the arm in
+    /// `parameters` and what `options` ask for. The springs of elastic joints carry the
+    /// arm's weight.
+    pub fn realistic(
+        parameters: &ArmParameters,
+        model: &PlantModel,
+        q0: &JointVector<f64>,
+        options: &PlantOptions,
+    ) -> Self {
+        let law = FrictionLaw::of(parameters);
+        let springs = || {
+            let load = model.gravity_torque(q0);
+            Elastic::new(&Actuators::of(parameters), q0, &load)
+        };
         Self {
             friction: if options.stiction {
-                DryFriction::Sticking(Stiction::new())
+                DryFriction::Sticking(Stiction::new(law))
             } else {
-                DryFriction::Smooth
+                DryFriction::Smooth(law)
             },
-            elastic: options
-                .elasticity
-                .then(|| Elastic::new(q0, &model.gravity_torque(q0))),
+            elastic: options.elasticity.then(springs),
             ..Self::ideal(model)
         }
     }
@@ -123,7 +134,6 @@ impl PlantModel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::friction::{COULOMB, VISCOUS};
     use super::super::noise::{Rng, stream};
     use super::super::stiction::BREAK_AWAY;
     use super::*;
@@ -139,7 +149,11 @@ mod tests {
             elasticity,
             ..PlantOptions::default()
         };
-        Drive::realistic(model, &q0.into(), &options)
+        Drive::realistic(&LWR_IV, model, &q0.into(), &options)
+    }
+
+    fn law() -> FrictionLaw {
+        FrictionLaw::of(&LWR_IV)
     }
 
     fn at_rest(q: [f64; DOF]) -> JointState<f64> {
@@ -166,8 +180,7 @@ mod tests {
             let mut state = start;
             for _ in 0..2000 {
                 // Another torque every step, up to 1 % from the level.
-                let push = random(&mut rng).component_mul(&JointVector::from(COULOMB))
-                    * (0.99 * BREAK_AWAY);
+                let push = random(&mut rng).component_mul(&law().coulomb) * (0.99 * BREAK_AWAY);
                 state = drive.step(&model, &state, H, &(weight + push), &Impedance::NONE, &NONE);
                 match (&drive.elastic, motors) {
                     (Some(elastic), Some(motors)) => assert_eq!(elastic.motor, motors),
@@ -188,7 +201,7 @@ mod tests {
                 let mut state = at_rest(POSTURE);
                 for n in 0..40 {
                     let mut torque = model.gravity_torque(&state.q);
-                    torque[joint] += COULOMB[joint] * if n == 0 { first } else { then };
+                    torque[joint] += law().coulomb[joint] * if n == 0 { first } else { then };
                     state = drive.step(&model, &state, H, &torque, &Impedance::NONE, &NONE);
                 }
                 state.dq[joint]
@@ -209,7 +222,7 @@ mod tests {
         let mut state = at_rest(POSTURE);
         state.dq[6] = 2.0;
         let inertia = 2.0 * model.kinetic_energy(&state) / 4.0;
-        let (dry, viscous) = (COULOMB[6], VISCOUS[6]);
+        let (dry, viscous) = (law().coulomb[6], law().viscous[6]);
         let expected = inertia / viscous * libm::log(1.0 + viscous * 2.0 / dry);
         let time = |h: f64| {
             let (mut drive, mut state) = (drive(&model, POSTURE, true, false), state);
@@ -240,7 +253,7 @@ mod tests {
                 for n in 0..40_000 {
                     let t = f64::from(n / 8) * 8.0 * H;
                     let sway = JointVector::from_fn(|i, _| {
-                        1.6 * COULOMB[i] * libm::sin((3.0 + 0.7 * i as f64) * t)
+                        1.6 * law().coulomb[i] * libm::sin((3.0 + 0.7 * i as f64) * t)
                     });
                     let back = (state.q - JointVector::from(posture)) * 0.5;
                     let torque = model.gravity_torque(&state.q) + sway - back;
@@ -349,9 +362,8 @@ mod tests {
         // One body of link and motor, by the same kind of step.
         let mut rigid = at_rest(POSTURE);
         for n in 0..2000 {
-            let friction = Friction::at(&rigid.dq);
-            let armature =
-                friction.slope * H + JointVector::from(super::super::elastic::MOTOR_INERTIA);
+            let friction = law().at(&rigid.dq);
+            let armature = friction.slope * H + Actuators::of(&LWR_IV).motor_inertia;
             let load = torque(f64::from(n) * H) - friction.torque;
             let dq = rigid.dq + model.forward_dynamics(&rigid.q, &rigid.dq, &load, &armature) * H;
             rigid.q += (rigid.dq + dq) * (0.5 * H);

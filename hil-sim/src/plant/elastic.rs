@@ -15,22 +15,14 @@
 //! knows s and can correct the motor's angle by the spring's deflection. This is
 //! taken to be exact, up to the encoder step.
 //!
-//! All values are chosen: springs stiff enough to hold the arm within a few
-//! milliradians, motors and dampers such that the resonances lie far above the
-//! bandwidth of the control loop. They describe no particular drive.
+//! All values but rotor inertias of a table are chosen ([`Actuators`]): springs stiff enough
+//! to hold the arm within a few milliradians, motors and dampers such that the resonances lie
+//! far above the bandwidth of the control loop. They describe no particular drive.
 
 use controller_core::joint::{JointState, JointVector};
 
+use super::actuators::Actuators;
 use super::friction::Friction;
-
-/// K \[Nm/rad\] per joint. Chosen.
-pub const JOINT_STIFFNESS: [f64; 7] = [1e4, 1e4, 1e4, 1e4, 5e3, 3e3, 5e2];
-
-/// D \[Nms/rad\] per joint. Chosen.
-pub const JOINT_DAMPING: [f64; 7] = [3.0, 3.0, 3.0, 3.0, 1.5, 0.8, 0.1];
-
-/// B \[kg m2\] per joint, behind the gear and the torque loop. Chosen.
-pub const MOTOR_INERTIA: [f64; 7] = [0.02, 0.02, 0.02, 0.02, 0.01, 0.005, 0.002];
 
 /// Motors and springs.
 #[derive(Clone, Debug)]
@@ -71,14 +63,13 @@ impl Elimination {
 impl Elastic {
     /// Motors at rest, springs drawn so that they carry `load` \[Nm\] at the link
     /// posture `q` \[rad\].
-    pub fn new(q: &JointVector<f64>, load: &JointVector<f64>) -> Self {
-        let stiffness = JointVector::from(JOINT_STIFFNESS);
+    pub fn new(drives: &Actuators, q: &JointVector<f64>, load: &JointVector<f64>) -> Self {
         Self {
-            stiffness,
-            damping: JOINT_DAMPING.into(),
-            inertia: MOTOR_INERTIA.into(),
+            stiffness: drives.stiffness,
+            damping: drives.damping,
+            inertia: drives.motor_inertia,
             motor: JointState {
-                q: q + load.component_div(&stiffness),
+                q: q + load.component_div(&drives.stiffness),
                 dq: JointVector::zeros(),
             },
         }
@@ -130,6 +121,7 @@ impl Elastic {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use arms::LWR_IV;
     use controller_core::joint::DOF;
 
     /// Link and motor of every joint, free in space: the motor's swing against
@@ -141,7 +133,7 @@ mod tests {
             slope: none,
         };
         JointVector::from_fn(|joint, _| {
-            let mut elastic = Elastic::new(&none, &none);
+            let mut elastic = Elastic::new(&Actuators::of(&LWR_IV), &none, &none);
             elastic.motor.dq.fill(1.0);
             let mut state = JointState { q: none, dq: none };
             let steps = (time[joint] / h).ceil();
@@ -161,12 +153,14 @@ mod tests {
     #[test]
     fn a_spring_swings_and_settles_as_in_closed_form() {
         let link = JointVector::from([1.0, 1.2, 0.3, 0.3, 0.02, 0.01, 0.001]);
-        let (k, d) = (
-            JointVector::from(JOINT_STIFFNESS),
-            JointVector::from(JOINT_DAMPING),
-        );
+        let Actuators {
+            stiffness: k,
+            damping: d,
+            motor_inertia,
+            ..
+        } = Actuators::of(&LWR_IV);
         // Two masses swing against each other like one of their reduced mass.
-        let reduced = link.map(|m| 1.0 / m) + JointVector::from(MOTOR_INERTIA).map(|b| 1.0 / b);
+        let reduced = link.map(|m| 1.0 / m) + motor_inertia.map(|b| 1.0 / b);
         let decay = d.component_mul(&reduced) * 0.5;
         let rate = (k.component_mul(&reduced) - decay.component_mul(&decay)).map(f64::sqrt);
         // Whole periods: the speed is at its start value, less the decay.

@@ -126,7 +126,7 @@ mod tests {
         span: &Span,
         torque: &JointVector<f64>,
     ) -> JointState<f64> {
-        let mut drive = Drive::realistic(model, &state.q, &PlantOptions::default());
+        let mut drive = Drive::realistic(&LWR_IV, model, &state.q, &PlantOptions::default());
         let none = |_: f64, _: &_| JointVector::zeros();
         implicit(
             model,

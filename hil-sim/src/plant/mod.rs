@@ -14,6 +14,7 @@
 //! seed gives the same bytes on every machine.
 
 mod aba;
+pub mod actuators;
 mod drive;
 pub mod elastic;
 pub mod friction;
@@ -30,6 +31,7 @@ use cell::names::PlantKind;
 use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointState, JointVector};
 
+use actuators::Actuators;
 use drive::Drive;
 use integrate::Span;
 
@@ -41,10 +43,6 @@ pub use noise::Rng;
 pub(crate) use options::DeadTime;
 pub use options::PlantOptions;
 pub use sensor::Sensor;
-
-/// Standard deviation of the torque noise \[Nm\] per joint, of one draw per
-/// cycle that holds for the cycle.
-pub const TORQUE_NOISE: [f64; 7] = [0.1, 0.1, 0.1, 0.1, 0.05, 0.03, 0.01];
 
 /// A simulated arm and its state.
 #[derive(Clone, Debug)]
@@ -63,6 +61,8 @@ pub struct Plant {
 struct Imperfections {
     sensor: Sensor,
     torque_noise: Rng,
+    /// Standard deviation of it \[Nm\].
+    torque_deviation: JointVector<f64>,
 }
 
 impl Plant {
@@ -109,11 +109,19 @@ impl Plant {
             }
             PlantKind::Realistic => {
                 let mut rng = Rng::new(seed, noise::stream::MISMATCH);
-                let model = PlantModel::new(&mismatched(parameters, &mut rng));
-                let drive = Drive::realistic(&model, &q0, &options);
+                let mut moving = mismatched(parameters, &mut rng);
+                if options.elasticity {
+                    // Rotors are on the other side of the springs.
+                    for link in &mut moving.links {
+                        link.rotor_inertia = 0.0;
+                    }
+                }
+                let model = PlantModel::new(&moving);
+                let drive = Drive::realistic(parameters, &model, &q0, &options);
                 let imperfections = Imperfections {
                     sensor: Sensor::new(&q0, cycle_s),
                     torque_noise: Rng::new(seed, noise::stream::TORQUE),
+                    torque_deviation: Actuators::of(parameters).torque_noise,
                 };
                 (model, drive, Some(imperfections))
             }
@@ -191,9 +199,10 @@ impl Plant {
         mut external: impl FnMut(f64, &PlantModel, &JointState<f64>) -> JointVector<f64>,
     ) {
         let mut torque = self.dead_time.pass(torque);
-        if let Some(Imperfections { torque_noise, .. }) = &mut self.imperfections {
-            for (torque, deviation) in torque.iter_mut().zip(TORQUE_NOISE) {
-                *torque += deviation * torque_noise.gaussian();
+        if let Some(imperfections) = &mut self.imperfections {
+            let deviations = imperfections.torque_deviation.iter();
+            for (torque, deviation) in torque.iter_mut().zip(deviations) {
+                *torque += deviation * imperfections.torque_noise.gaussian();
             }
         }
         let (model, start, cycle_s) = (&self.model, &self.state, self.cycle_s);

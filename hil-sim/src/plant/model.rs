@@ -186,6 +186,13 @@ impl PlantModel {
         (point, velocity)
     }
 
+    /// Rotation from the DH frame of `link` (as in [`PlantModel::point`]) to the base-plate
+    /// frame in the posture `q` \[rad\].
+    #[must_use]
+    pub fn orientation(&self, q: &JointVector<f64>, link: usize) -> Matrix3<f64> {
+        self.chain(q, link).rotation
+    }
+
     /// Joint torque J^T F \[Nm\], positive along +q, of the force `force` \[N\],
     /// base-plate axes, that acts on the arm at `offset` \[m\] in the DH frame of
     /// `link` (as in [`PlantModel::point`]).

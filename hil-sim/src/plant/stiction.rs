@@ -19,7 +19,7 @@
 
 use controller_core::joint::{DOF, JointMatrix, JointVector};
 
-use super::friction::{COULOMB, Friction, VISCOUS};
+use super::friction::{Friction, FrictionLaw};
 
 /// Break-away level over sliding level, F_s / F_c. Chosen: it stands for no
 /// particular drive.
@@ -32,6 +32,7 @@ pub const SWEEPS: usize = 60;
 /// Set-valued friction and what it remembers from step to step.
 #[derive(Clone, Debug)]
 pub(super) struct Stiction {
+    law: FrictionLaw,
     /// Friction torque of the last step \[Nm\], of the sign of the motion that it
     /// opposes.
     pub torque: JointVector<f64>,
@@ -46,7 +47,7 @@ pub(super) enum DryFriction {
     /// They turn freely, without any friction.
     None,
     /// Friction that passes smoothly through zero speed.
-    Smooth,
+    Smooth(FrictionLaw),
     /// Friction that holds.
     Sticking(Stiction),
 }
@@ -57,9 +58,9 @@ impl DryFriction {
     pub fn explicit(&self, speed: &JointVector<f64>) -> Friction {
         match self {
             Self::None => Friction::NONE,
-            Self::Smooth => Friction::at(speed),
-            Self::Sticking(_) => {
-                let slope = JointVector::from(VISCOUS);
+            Self::Smooth(law) => law.at(speed),
+            Self::Sticking(Stiction { law, .. }) => {
+                let slope = law.viscous;
                 Friction {
                     torque: slope.component_mul(speed),
                     slope,
@@ -70,8 +71,9 @@ impl DryFriction {
 }
 
 impl Stiction {
-    pub fn new() -> Self {
+    pub fn new(law: FrictionLaw) -> Self {
         Self {
+            law,
             torque: JointVector::zeros(),
             residual: 0.0,
         }
@@ -87,7 +89,7 @@ impl Stiction {
         free: &JointVector<f64>,
     ) -> JointVector<f64> {
         let bound = JointVector::from_fn(|i, _| {
-            COULOMB[i] * if before[i] == 0.0 { BREAK_AWAY } else { 1.0 }
+            self.law.coulomb[i] * if before[i] == 0.0 { BREAK_AWAY } else { 1.0 }
         });
         let mut torque = self.torque;
         for _ in 0..SWEEPS {
@@ -116,10 +118,12 @@ impl Stiction {
 mod tests {
     use super::super::noise::{Rng, stream};
     use super::*;
+    use arms::LWR_IV;
 
     #[test]
     fn friction_obeys_its_law() {
         let mut rng = Rng::new(3, stream::TORQUE);
+        let law = FrictionLaw::of(&LWR_IV);
         for _ in 0..1000 {
             let mut random = || 2.0 * rng.uniform() - 1.0;
             let root = JointMatrix::from_fn(|_, _| random());
@@ -127,13 +131,13 @@ mod tests {
             let free = JointVector::from_fn(|_, _| 3.0 * random());
             // Every other joint starts from rest.
             let before = JointVector::from_fn(|i, _| (i % 2) as f64);
-            let mut stiction = Stiction::new();
+            let mut stiction = Stiction::new(law);
             let speed = stiction.solve(&response, &before, &free);
             // Well-conditioned: the sweeps converge to rounding.
             assert!(stiction.residual < 1e-9, "{}", stiction.residual);
             assert!((free - response * stiction.torque - speed).amax() < 1e-8);
             for i in 0..DOF {
-                let bound = COULOMB[i] * if i % 2 == 0 { BREAK_AWAY } else { 1.0 };
+                let bound = law.coulomb[i] * if i % 2 == 0 { BREAK_AWAY } else { 1.0 };
                 let torque = stiction.torque[i];
                 if speed[i] == 0.0 {
                     assert!(torque.abs() < bound);

@@ -138,7 +138,7 @@ pub(crate) fn torque_panels(recording: &Recording) -> Vec<Panel> {
             recording.line("true \u{3c4}_ext", recording.tau_ext(joint), wide),
             recording.line("estimate \u{2212}r", &estimate, thin),
         ];
-        let label = format!("joint {} [Nm]", joint + 1);
+        let label = format!("{} [Nm]", recording.arm().joint(joint));
         Panel::new(label, Panel::height_among(DOF), Scale::Linear, lines)
     };
     (0..DOF).map(panel).collect()
@@ -273,8 +273,8 @@ fn arm(run: &Run<'_>) -> Option<Figure> {
     let title = format!("Arm postures \u{2013} {}", run.label());
     (!run.recording.arms.is_empty()).then(|| Figure {
         file: "arm.svg",
-        caption: "The arm as lines from the base plate over shoulder, elbow and wrist to the \
-                  flange, at the start and while contacts press: the same task, other postures. \
+        caption: "The arm as lines from the base plate along the lengths of its table to flange \
+                  and tool, base-plate axes, at the start and while contacts press: the same task, other postures. \
                   Thin line: path of the first level\u{2019}s point."
             .into(),
         drawing: scene::postures(run, &title),

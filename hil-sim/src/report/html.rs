@@ -269,11 +269,11 @@ mod tests {
                 limits: None,
                 levels: vec![level],
             };
-            recording.push(&scenario, &sample);
+            recording.push(&sample);
         }
         recording.arms.push(ArmSnapshot {
             t_s: 0.0,
-            joints: [[value; 3]; 4],
+            corners: vec![[value; 3]; 5],
         });
         recording.finish();
         (summary, scenario, recording)

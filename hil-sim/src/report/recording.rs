@@ -5,12 +5,12 @@
 //! [`CAPACITY`] rows, two for every block of cycles, the extremes in the order
 //! in which they came. A peak of one cycle is kept, whatever the length.
 
-use cell::scenario::Scenario;
-use controller_core::joint::JointState;
+use cell::scenario::{EquippedArm, Scenario};
 use record::channel::{Channel, Value};
 use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
 use super::plot::{Series, Style};
+use crate::arm_points::outline;
 use crate::contact::Contacts;
 use crate::plant::PlantModel;
 
@@ -20,34 +20,13 @@ pub const CAPACITY: usize = 1 << 15;
 /// Instants of arm postures where no contact says when to look.
 const FREE_SNAPSHOTS: usize = 5;
 
-/// The arm's joint centres at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The drawn arm at an instant.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ArmSnapshot {
     /// Time \[s\].
     pub t_s: f64,
-    /// Shoulder, elbow, wrist, flange \[m\], base-plate frame.
-    pub joints: [[f64; 3]; 4],
-}
-
-impl ArmSnapshot {
-    /// The posture of `model` at `state`.
-    #[must_use]
-    pub fn new(t_s: f64, model: &PlantModel, state: &JointState<f64>, scenario: &Scenario) -> Self {
-        let arm = scenario.arm();
-        let centre = |link: usize, offset: [f64; 3]| {
-            let (x, _) = model.point(state, link, &offset.into());
-            [x.x, x.y, x.z]
-        };
-        Self {
-            t_s,
-            joints: [
-                arm.base.shift,
-                centre(3, [0.0; 3]),
-                centre(5, [0.0; 3]),
-                centre(7, arm.flange.shift),
-            ],
-        }
-    }
+    /// Base plate to flange or tool \[m\], base-plate frame ([`outline`]).
+    pub corners: Vec<[f64; 3]>,
 }
 
 /// Time series of a run. Filled by [`Recording::push`], closed by
@@ -64,7 +43,8 @@ pub struct Recording {
     rows: usize,
     has_hands: bool,
     snapshots_due: Vec<f64>,
-    arm: PlantModel,
+    arm: EquippedArm,
+    plant: PlantModel,
     /// Postures at the start and while the contacts press.
     pub arms: Vec<ArmSnapshot>,
 }
@@ -109,6 +89,7 @@ impl Recording {
     /// whether its scripted contacts act.
     #[must_use]
     pub fn new(scenario: &Scenario, contacts: bool) -> Self {
+        let arm = scenario.arm();
         let levels = scenario.levels.len();
         let columns = width(CHANNELS) + levels * width(LEVEL_CHANNELS);
         Self {
@@ -121,13 +102,14 @@ impl Recording {
             rows: scenario.levels.iter().map(|level| level.axes.len()).sum(),
             has_hands: !scenario.hands.is_empty(),
             snapshots_due: snapshot_times(scenario, contacts),
-            arm: PlantModel::new(scenario.arm()),
+            plant: PlantModel::new(&arm.parameters),
+            arm,
             arms: Vec::new(),
         }
     }
 
     /// Adds a cycle.
-    pub fn push(&mut self, scenario: &Scenario, sample: &Sample) {
+    pub fn push(&mut self, sample: &Sample) {
         self.block_t.push(sample.t_s);
         let mut columns = self.block.iter_mut();
         let mut put = |name: &str, value: Value| {
@@ -151,8 +133,10 @@ impl Recording {
             self.close_block();
         }
         if self.snapshot_due(sample.t_s) {
-            let snapshot = ArmSnapshot::new(sample.t_s, &self.arm, &sample.state, scenario);
-            self.arms.push(snapshot);
+            self.arms.push(ArmSnapshot {
+                t_s: sample.t_s,
+                corners: outline(&self.arm, &self.plant, &sample.state.q),
+            });
         }
     }
 
@@ -197,6 +181,12 @@ impl Recording {
     #[must_use]
     pub fn line(&self, label: impl Into<String>, values: &[f64], style: Style) -> Series {
         Series::new(label, &self.t, values, style)
+    }
+
+    /// The arm of the run.
+    #[must_use]
+    pub fn arm(&self) -> &EquippedArm {
+        &self.arm
     }
 
     /// Times \[s\] of all series.
@@ -327,6 +317,7 @@ fn extremes(values: &[f64]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use controller_core::joint::JointState;
     use controller_core::joint::JointVector;
     use record::run::LevelSample;
 
@@ -360,7 +351,7 @@ mod tests {
                 leak: f64::NAN,
                 ..LevelSample::default()
             };
-            recording.push(&scenario, &sample(k as f64 * scenario.cycle_s(), level));
+            recording.push(&sample(k as f64 * scenario.cycle_s(), level));
         }
         recording.finish();
         let error = recording.error_milli(0);

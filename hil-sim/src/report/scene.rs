@@ -185,10 +185,41 @@ fn instant(t_s: f64, bands: &[Band]) -> String {
 pub fn postures(run: &Run<'_>, title: &str) -> Svg {
     let (arms, bands) = (&run.recording.arms, run.bands());
     let labels: Vec<_> = arms.iter().map(|arm| instant(arm.t_s, &bands)).collect();
-    stick_figures(title, arms, &labels, &first_path(run.recording))
+    let gravity = run.recording.arm().parameters.gravity;
+    stick_figures(title, arms, &labels, &first_path(run.recording), gravity)
 }
 
-fn stick_figures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[f64; 3]]) -> Svg {
+/// Where gravity points, in the upper right corner of a view that ends at `right` and begins
+/// at `top`; nothing where it points into the view.
+fn gravity_arrow(svg: &mut Svg, [right, top]: [f64; 2], [x, y]: [f64; 2]) {
+    const LENGTH: f64 = 36.0;
+    let size = x.hypot(y);
+    if size < 1.0 {
+        return;
+    }
+    let along = [x / size, -y / size];
+    let at = |forward: f64, aside: f64| {
+        [
+            right - 30.0 + along[0] * forward - along[1] * aside,
+            top + 30.0 + along[1] * forward + along[0] * aside,
+        ]
+    };
+    let tip = at(LENGTH / 2.0, 0.0);
+    svg.line("wire", at(-LENGTH / 2.0, 0.0), tip);
+    for aside in [-5.0, 5.0] {
+        svg.line("wire", tip, at(LENGTH / 2.0 - 8.0, aside));
+    }
+    let [x, y] = at(0.0, 14.0);
+    svg.text("m", [x, y + 4.0], Anchor::Middle, "g");
+}
+
+fn stick_figures(
+    title: &str,
+    arms: &[ArmSnapshot],
+    labels: &[String],
+    path: &[[f64; 3]],
+    gravity: [f64; 3],
+) -> Svg {
     const SIZE: [f64; 2] = [350.0, 350.0];
     let mut svg = Svg::new(
         "arm",
@@ -213,7 +244,7 @@ fn stick_figures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[
     // Both views have the same scale.
     let all = |axes| {
         arms.iter()
-            .flat_map(|arm| arm.joints)
+            .flat_map(|arm| arm.corners.iter().copied())
             .chain(path.iter().copied())
             .map(move |p| flat(axes, &p))
     };
@@ -231,13 +262,21 @@ fn stick_figures(title: &str, arms: &[ArmSnapshot], labels: &[String], path: &[[
         svg.curve("axis", &view.pixels(&thinned(&line)), "");
         let [bx, by] = view.pixel([0.0, 0.0]);
         svg.line("wire", [bx - 22.0, by], [bx + 22.0, by]);
+        // Of an arm that stands upright it is where one expects it.
+        if gravity[0] != 0.0 || gravity[1] != 0.0 || gravity[2] > 0.0 {
+            let corner = [view.far_corner()[0], view.corner[1]];
+            gravity_arrow(&mut svg, corner, flat(axes, &gravity));
+        }
         for (index, arm) in arms.iter().enumerate() {
             let style = arm_style(index);
-            let joints = arm.joints.map(|p| view.pixel(flat(axes, &p)));
-            let links = [&[[bx, by]], &joints[..]].concat();
-            svg.curve(&style.class(), &links, r#" style="stroke-width:3""#);
-            for joint in joints {
-                svg.circle(&format!("bg s{}", style.colour), joint, 3.2);
+            let corners: Vec<_> = arm
+                .corners
+                .iter()
+                .map(|p| view.pixel(flat(axes, p)))
+                .collect();
+            svg.curve(&style.class(), &corners, r#" style="stroke-width:3""#);
+            for corner in corners.into_iter().skip(1) {
+                svg.circle(&format!("bg s{}", style.colour), corner, 3.2);
             }
         }
     }
@@ -257,7 +296,8 @@ mod tests {
     fn postures_are_drawn_whatever_they_are() {
         let arm = |z: f64| ArmSnapshot {
             t_s: z,
-            joints: [
+            corners: vec![
+                [0.0, 0.0, 0.0],
                 [0.0, 0.0, 0.31],
                 [0.1, 0.0, 0.6],
                 [0.3, 0.1, z],
@@ -272,9 +312,12 @@ mod tests {
         ] {
             let labels: Vec<_> = arms.iter().map(|arm| instant(arm.t_s, &[])).collect();
             let path = [[0.4, 0.1, 0.5], [0.4, f64::NAN, 0.5]];
-            let file = stick_figures("Arm", &arms, &labels, &path).standalone();
-            well_formed(&file).unwrap();
-            assert!(!file.contains("NaN"));
+            for gravity in [[0.0, 0.0, -9.81], [0.0, 0.0, 9.81], [9.81, 0.0, 0.0]] {
+                let file = stick_figures("Arm", &arms, &labels, &path, gravity).standalone();
+                well_formed(&file).unwrap();
+                assert!(!file.contains("NaN"));
+                assert_eq!(file.contains(">g</text>"), gravity[2] >= 0.0);
+            }
         }
     }
 

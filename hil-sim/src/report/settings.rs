@@ -4,8 +4,9 @@ use super::Run;
 use super::svg::escape;
 use super::tables::Table;
 use super::ticks::plain;
-use cell::names::Named;
-use cell::scenario::{AxisGain, LevelSpec, PostureSpec, ReferenceSpec};
+use crate::plant::friction::FrictionLaw;
+use cell::names::{Named, PlantKind};
+use cell::scenario::{AxisGain, AxisOf, LevelSpec, PostureSpec, ReferenceSpec};
 
 /// Gains as they acted, references, cycle.
 pub fn settings(run: &Run<'_>) -> String {
@@ -17,7 +18,30 @@ pub fn settings(run: &Run<'_>) -> String {
     };
     let mut table = Table::new(caption, ["Setting", "Value"]);
     let mut row = |name: &str, value: &str| table.row(&escape(name), [escape(value)]);
-    row("Arm", &scenario.robot);
+    let arm = run.recording.arm();
+    row("Arm", arm.parameters.name);
+    if let Some(mount) = &scenario.mount {
+        let [roll, pitch, yaw] = mount.rpy_deg.map(plain);
+        row(
+            "Mount [deg]",
+            &format!("roll {roll}, pitch {pitch}, yaw {yaw}"),
+        );
+    }
+    if let Some(tool) = &scenario.tool {
+        row("Tool: mass [kg]", &plain(tool.mass_kg));
+        row(
+            "Tool: frame in the flange [m], roll, pitch, yaw [deg]",
+            &format!("{}; {}", list(&tool.shift_m), list(&tool.rpy_deg)),
+        );
+        row(
+            "Tool: centre of mass [m], inertia about it [kg m\u{b2}]",
+            &format!(
+                "{}; {}",
+                list(&tool.center_of_mass_m),
+                list(&tool.inertia_kg_m2)
+            ),
+        );
+    }
     row(
         "Plant, seed",
         &format!("{}, {}", summary.plant, summary.seed),
@@ -28,6 +52,9 @@ pub fn settings(run: &Run<'_>) -> String {
         "Duration, cycle",
         &format!("{duration} s, {cycle} ms, {} cycles run", summary.cycles),
     );
+    if summary.plant == PlantKind::Realistic.name() && FrictionLaw::of(&arm.parameters).is_none() {
+        row("Friction", "none: that of this arm is not known");
+    }
     let options = &run.choices.options;
     let measurement = run.choices.measurement.name();
     row(
@@ -105,8 +132,12 @@ fn reference(level: &LevelSpec) -> String {
         }
         ReferenceSpec::Swing(swing) => {
             return format!(
-                "swing about ({}), {} deg reached in {} s, {} s a swing",
+                "swing about ({}){}, {} deg reached in {} s, {} s a swing",
                 list(&swing.axis),
+                match swing.axis_of {
+                    AxisOf::BasePlate => "",
+                    AxisOf::Own => " of its own frame",
+                },
                 plain(swing.angle_deg),
                 plain(swing.growth_s),
                 plain(swing.period_s)

@@ -220,10 +220,9 @@ pub fn contacts(run: &Run<'_>) -> String {
 /// Torque, travel, estimate, limits and faults.
 pub fn joints(run: &Run<'_>) -> String {
     let summary = run.summary;
-    let names = (0..=7).map(|joint| match joint {
-        0 => "Quantity".to_string(),
-        joint => format!("#Joint {joint}"),
-    });
+    let joints = run.recording.arm().joints();
+    let names =
+        std::iter::once("Quantity".to_string()).chain(joints.map(|name| format!("#{name}")));
     let mut table = Table::new("Per joint.", names);
     let cells = |values: &[f64; 7]| values.map(|value| number(Some(value)));
     table.row("Largest |\u{3c4}| [Nm]", cells(&summary.torque.max_abs_nm));

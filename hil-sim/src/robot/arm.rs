@@ -1,6 +1,7 @@
 //! The robot: its parts, where it is, and what may be done to it besides answers.
 
 use controller_core::Target;
+use controller_core::arm::ArmParameters;
 use controller_core::fault::Status;
 use controller_core::joint::{JointMatrix, JointState, JointVector};
 use fri::{InterfaceState, Quality};
@@ -14,7 +15,7 @@ use super::model::RobotModel;
 use super::options::RobotOptions;
 use super::rating::Rating;
 use crate::after_fault::Ending;
-use crate::contact::{Contacts, push_torque};
+use crate::contact::{Contacts, PlacedPush};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
 use crate::sample::{LevelProbes, Stop};
@@ -44,7 +45,7 @@ pub struct Robot {
     pub(super) cycle_s: f64,
     pub(super) model: RobotModel,
     pub(super) torque_limit: JointVector<f64>,
-    pub(super) speed_limit: JointVector<f64>,
+    pub(super) parameters: ArmParameters,
     pub(super) plant: Plant,
     pub(super) krc: Krc,
     pub(super) rating: Rating,
@@ -53,7 +54,7 @@ pub struct Robot {
     pub(super) pipe: Pipe,
     pub(super) contacts: Contacts,
     /// Pushes typed while it runs, in robot time.
-    pub(super) typed: Vec<Push>,
+    pub(super) typed: Vec<PlacedPush>,
     pub(super) drives_off: bool,
     pub(super) probes: LevelProbes,
     pub(super) metrics: Metrics,
@@ -96,12 +97,10 @@ impl Robot {
     #[must_use]
     pub fn new(setup: RobotSetup) -> Self {
         let scenario = &setup.scenario;
-        let (arm, cycle_s, q0) = (scenario.arm(), scenario.cycle_s(), scenario.start());
-        let limit = |value: fn(&controller_core::arm::LinkParameters) -> f64| {
-            JointVector::from_fn(|i, _| value(&arm.links[i]))
-        };
-        let speed_limit = limit(|link| link.speed_limit);
-        let torque_limit = limit(|link| link.torque_limit);
+        let (cycle_s, q0) = (scenario.cycle_s(), scenario.start());
+        let equipped = scenario.arm();
+        let arm = &equipped.parameters;
+        let torque_limit = JointVector::from_fn(|i, _| arm.links[i].torque_limit);
         let contacts = if setup.contacts {
             Contacts::of(scenario)
         } else {
@@ -115,9 +114,9 @@ impl Robot {
             cycle_s,
             model: RobotModel::new(arm),
             torque_limit,
-            speed_limit,
+            parameters: *arm,
             plant: Plant::with_options(setup.plant, arm, q0, cycle_s, setup.seed, own),
-            krc: Krc::new(setup.options, cycle_s, &q0, &speed_limit, &torque_limit),
+            krc: Krc::new(setup.options, cycle_s, &q0, arm),
             rating: Rating::new(setup.options.rating, cycle_s),
             inbox: Inbox::new(),
             counters: Counters::default(),
@@ -151,7 +150,7 @@ impl Robot {
         let (scripted, hand_force_n) = self.contacts.joint_torque(t_s, self.plant.model(), &truth);
         let model = self.plant.model();
         let contact = self.typed.iter().fold(scripted, |sum, push| {
-            sum + push_torque(push, robot_t, model, &truth)
+            sum + push.torque(robot_t, model, &truth)
         });
         let seen = Seen {
             truth,
@@ -302,19 +301,21 @@ impl Robot {
     pub fn push(&mut self, point: PointSpec, force_n: [f64; 3], seconds: f64) {
         const RAMP_S: f64 = 0.1;
         let from_s = self.robot_time_s();
-        self.typed.push(Push {
+        let push = Push {
             point,
             from_s,
             to_s: from_s + seconds,
             ramp_s: RAMP_S.min(seconds / 2.0),
             force_n,
-        });
+        };
+        let arm = self.setup.scenario.arm();
+        self.typed.push(PlacedPush::new(push, &arm));
     }
 
     /// Takes all typed pushes away, with their ramps.
     pub fn release(&mut self) {
         let now = self.robot_time_s();
-        for push in &mut self.typed {
+        for PlacedPush { push, .. } in &mut self.typed {
             push.to_s = push.to_s.min(now + push.ramp_s);
         }
     }

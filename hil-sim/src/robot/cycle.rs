@@ -12,7 +12,6 @@ use super::options::{RobotAdds, cycles};
 use super::order;
 use crate::after_fault::Acting;
 use crate::arm_points::origins;
-use crate::contact::push_torque;
 use crate::sample::{Stop, UnsafeMotion};
 use record::run::Sample;
 
@@ -101,7 +100,7 @@ impl Robot {
             return None;
         }
         let seen = self.look();
-        let unsafe_motion = UnsafeMotion::of(&seen.truth, &self.speed_limit);
+        let unsafe_motion = UnsafeMotion::of(&seen.truth, &self.parameters);
         if let Some(lost @ UnsafeMotion::NotFinite { .. }) = unsafe_motion {
             self.ending.at_once(Stop::Unsafe(lost));
             return None;
@@ -209,12 +208,12 @@ impl Robot {
             |t, model, state| {
                 let (scripted, _) = contacts.joint_torque(t, model, state);
                 let at = robot_t + (t - scenario_t);
-                typed.iter().fold(scripted, |sum, push| {
-                    sum + push_torque(push, at, model, state)
-                })
+                typed
+                    .iter()
+                    .fold(scripted, |sum, push| sum + push.torque(at, model, state))
             },
         );
-        self.typed.retain(|push| push.to_s > robot_t);
+        self.typed.retain(|typed| typed.push.to_s > robot_t);
         self.cycle += 1;
         self.seen = None;
     }

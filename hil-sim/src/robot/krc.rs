@@ -3,7 +3,8 @@
 
 mod orders;
 
-use controller_core::joint::{JointMatrix, JointVector};
+use controller_core::arm::{ArmParameters, LinkParameters};
+use controller_core::joint::{DOF, JointMatrix, JointVector};
 use fri::{ControlScheme, InterfaceState, Quality};
 
 use super::driving::{Driving, Passage, Pipe};
@@ -44,6 +45,8 @@ pub struct Now<'a> {
 pub struct Krc {
     options: RobotOptions,
     cycle_s: f64,
+    /// Their maker's names.
+    joints: [&'static str; DOF],
     /// Largest motion of jntPos in a cycle \[rad\].
     reach: JointVector<f64>,
     /// Largest added torque that is taken for meant \[Nm\].
@@ -86,21 +89,22 @@ pub struct Krc {
 }
 
 impl Krc {
-    /// In monitor state, holding `q0` \[rad\]; `speed_limit` \[rad/s\] and `torque_limit`
-    /// \[Nm\] are the data sheet's.
+    /// In monitor state, holding `q0` \[rad\]; names and limits of joints are those of `arm`.
     #[must_use]
     pub fn new(
         options: RobotOptions,
         cycle_s: f64,
         q0: &JointVector<f64>,
-        speed_limit: &JointVector<f64>,
-        torque_limit: &JointVector<f64>,
+        arm: &ArmParameters,
     ) -> Self {
+        let limit =
+            |value: fn(&LinkParameters) -> f64| JointVector::from_fn(|i, _| value(&arm.links[i]));
         Self {
             options,
             cycle_s,
-            reach: speed_limit * (options.speed_factor * cycle_s),
-            torque_bound: torque_limit * options.torque_factor,
+            joints: arm.links.map(|link| link.name),
+            reach: limit(|link| link.speed_limit) * (options.speed_factor * cycle_s),
+            torque_bound: limit(|link| link.torque_limit) * options.torque_factor,
             commands: false,
             scheme: options.scheme,
             hold: *q0,
@@ -389,7 +393,7 @@ impl Krc {
             return;
         }
         self.good = 0;
-        match order.entry(&self.options, &self.hold, now.drives_on) {
+        match order.entry(&self.options, &self.hold, &self.joints, now.drives_on) {
             Err(message) => self.tell_once(&message),
             Ok(scheme) => {
                 self.scheme = scheme;

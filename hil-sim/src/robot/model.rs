@@ -1,7 +1,7 @@
 //! What the robot knows of itself: kinematics and dynamics from the nominal
 //! tables. It shares no method with the controller's model.
 
-use controller_core::arm::ArmParameters;
+use controller_core::arm::{ArmParameters, Pose};
 use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, Vector3};
 use nalgebra::{SMatrix, SVector};
 
@@ -19,7 +19,7 @@ pub type Frame = [f64; 12];
 pub struct RobotModel {
     arm: PlantModel,
     weightless: PlantModel,
-    flange: Vector3<f64>,
+    flange: Pose,
 }
 
 impl RobotModel {
@@ -30,7 +30,7 @@ impl RobotModel {
         Self {
             weightless: arm.weightless(),
             arm,
-            flange: parameters.flange.shift.into(),
+            flange: parameters.flange,
         }
     }
 
@@ -75,7 +75,7 @@ impl RobotModel {
                 dq: JointVector::zeros(),
             };
             state.dq[joint] = 1.0;
-            let (_, v) = self.arm.point(&state, DOF, &self.flange);
+            let (_, v) = self.arm.point(&state, DOF, &self.flange.shift.into());
             let w = angular_velocity(&self.arm, &state, DOF);
             let column = SVector::<f64, 6>::new(v.x, v.y, v.z, w.z, w.y, w.x);
             jacobian.set_column(joint, &column);
@@ -90,7 +90,10 @@ impl RobotModel {
             q: *q,
             dq: JointVector::zeros(),
         };
-        let at = |offset: Vector3<f64>| self.arm.point(&state, DOF, &(self.flange + offset)).0;
+        let at = |offset: Vector3<f64>| {
+            let place = self.flange.place(offset.into());
+            self.arm.point(&state, DOF, &place.into()).0
+        };
         let origin = at(Vector3::zeros());
         let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| at(axis) - origin);
         std::array::from_fn(|i| [x, y, z, origin][i % 4][i / 4])

@@ -40,7 +40,7 @@ pub struct Order {
 
 impl Order {
     /// The checks before command state, when the robot holds `hold` \[rad\]: the scheme
-    /// that begins.
+    /// that begins. `joints` are their names.
     ///
     /// # Errors
     /// Why it does not begin, in the client's terms.
@@ -48,6 +48,7 @@ impl Order {
         &self,
         options: &RobotOptions,
         hold: &JointVector<f64>,
+        joints: &[&str; DOF],
         drives_on: bool,
     ) -> Result<ControlScheme, String> {
         let scheme = match options.krl {
@@ -66,8 +67,8 @@ impl Order {
                 .map_or(0.0, |q| (q[joint] - hold[joint]).abs());
             if off > options.entry_position_rad {
                 return Err(format!(
-                    "jntPos of joint {} is {:.1} mrad from the commanded position; allowed: {:.1}",
-                    joint + 1,
+                    "jntPos of {} is {:.1} mrad from the commanded position; allowed: {:.1}",
+                    joints[joint],
                     off * 1e3,
                     options.entry_position_rad * 1e3
                 ));
@@ -77,9 +78,8 @@ impl Order {
             let torque = self.torque.map_or(0.0, |torque| torque[joint]);
             if torque.abs() > options.entry_torque_nm {
                 return Err(format!(
-                    "addJntTrq of joint {} is {torque:.2} Nm; allowed: {:.2}",
-                    joint + 1,
-                    options.entry_torque_nm
+                    "addJntTrq of {} is {torque:.2} Nm; allowed: {:.2}",
+                    joints[joint], options.entry_torque_nm
                 ));
             }
         }

@@ -2,7 +2,7 @@
 
 use controller_core::joint::{JointState, JointVector, Vector3};
 use controller_core::task::orientation;
-use controller_core::{Axes, LinkPoint, Reference, Target};
+use controller_core::{Axes, LinkFrame, LinkPoint, Reference, Target};
 
 use crate::arm_points;
 use crate::plant::PlantModel;
@@ -16,14 +16,18 @@ pub(crate) struct LevelProbes(pub Vec<LevelProbe>);
 pub(crate) struct LevelProbe {
     task: TaskSpec,
     point: LinkPoint,
+    /// Turns with the point.
+    frame: LinkFrame,
     axes: Axes,
 }
 
 impl LevelProbes {
     pub fn new(scenario: &Scenario) -> Self {
+        let arm = scenario.arm();
         let probe = |level: &LevelSpec| LevelProbe {
             task: level.task,
-            point: level.point.resolve(),
+            point: level.point.resolve(&arm),
+            frame: level.point.frame(&arm),
             axes: Axes::from_name(&level.axes).unwrap_or(Axes::XYZ),
         };
         Self(scenario.levels.iter().map(probe).collect())
@@ -62,7 +66,7 @@ impl LevelProbe {
             ..LevelSample::default()
         };
         if self.task == TaskSpec::Orientation {
-            let actual = arm_points::orientation(&truth.q, self.point.link.number());
+            let actual = arm_points::orientation(plant, &truth.q, &self.frame);
             let desired = match target {
                 Target::Orientation { q, .. } => *q,
                 _ => actual,

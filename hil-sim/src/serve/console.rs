@@ -10,7 +10,7 @@ use crate::robot::Robot;
 use crate::sample::Stop;
 use cell::invalid::Invalid;
 use cell::ranges::{DURATION_S, Range};
-use cell::scenario::PointSpec;
+use cell::scenario::{EquippedArm, PointSpec};
 use cell::terminal::tell;
 
 /// One line for a line that means nothing.
@@ -40,11 +40,11 @@ pub enum Wish {
 }
 
 impl Wish {
-    /// Reads a line; none if it is empty.
+    /// Reads a line; none if it is empty. Points are those of `arm`.
     ///
     /// # Errors
     /// What cannot be used, and what is allowed.
-    pub fn read(line: &str) -> Result<Option<Self>, Invalid> {
+    pub fn read(line: &str, arm: &EquippedArm) -> Result<Option<Self>, Invalid> {
         if line.len() > LONGEST {
             let allowed = format_args!("at most {LONGEST} bytes");
             return Err(Invalid::new("line", "longer", allowed));
@@ -54,7 +54,7 @@ impl Wish {
             [] => return Ok(None),
             ["push", point, x, y, z, seconds] => {
                 let point = PointSpec::Name(point.to_string());
-                point.validate()?;
+                point.validate(arm)?;
                 let number = |text: &str| {
                     let value = text.parse().ok().filter(|value| FORCE_N.contains(*value));
                     value.ok_or_else(|| Invalid::new("force", text, format_args!("{FORCE_N} N")))
@@ -143,8 +143,9 @@ impl Operator {
         }
         let Some(lines) = &self.lines else { return };
         // No more of them: the writer may be faster than this is.
+        let arm = robot.setup().scenario.arm();
         for line in lines.try_iter().take(QUEUE) {
-            match Wish::read(&line) {
+            match Wish::read(&line, &arm) {
                 Ok(None) => (),
                 Ok(Some(Wish::Push(point, force, seconds))) => robot.push(point, force, seconds),
                 Ok(Some(Wish::Release)) => robot.release(),
@@ -160,18 +161,19 @@ impl Operator {
 mod tests {
     use super::*;
 
+    fn read(line: &str) -> Result<Option<Wish>, Invalid> {
+        Wish::read(line, &EquippedArm::of(&arms::LWR_IV))
+    }
+
     #[test]
     fn lines_are_read() {
         assert!(matches!(
-            Wish::read("push elbow 0 35.5 -1 2"),
+            read("push elbow 0 35.5 -1 2"),
             Ok(Some(Wish::Push(_, [0.0, 35.5, -1.0], 2.0)))
         ));
-        assert!(matches!(Wish::read(" release "), Ok(Some(Wish::Release))));
-        assert!(matches!(
-            Wish::read("drives off"),
-            Ok(Some(Wish::Drives(false)))
-        ));
-        assert!(matches!(Wish::read(""), Ok(None)));
+        assert!(matches!(read(" release "), Ok(Some(Wish::Release))));
+        assert!(matches!(read("drives off"), Ok(Some(Wish::Drives(false)))));
+        assert!(matches!(read(""), Ok(None)));
     }
 
     #[test]
@@ -182,7 +184,7 @@ mod tests {
         let mut lines = Vec::new();
         while let Some(line) = next_line(&mut input).expect("memory") {
             assert!(line.len() <= LONGEST + 1);
-            lines.push(Wish::read(&line));
+            lines.push(read(&line));
         }
         let [text, long, empty, quit, last] = &lines[..] else {
             panic!("{lines:?}");
@@ -210,7 +212,7 @@ mod tests {
             "hold",
             "quit now",
         ] {
-            let error = Wish::read(line).expect_err(line).to_string();
+            let error = read(line).expect_err(line).to_string();
             assert_eq!(error.lines().count(), 1);
             assert!(error.contains("allowed"), "{error}");
         }

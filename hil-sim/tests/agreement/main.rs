@@ -121,7 +121,7 @@ fn run(case: &Case, measurement: MeasurementKind) -> Outcome {
         Ok(controller) => controller,
         Err(error) => return Outcome::refused(&error),
     };
-    let links = &experiment.scenario.arm().links;
+    let links = &experiment.scenario.arm().parameters.links;
     let mut bounds = [0.0_f64; 3];
     let summary = experiment.run(
         &controller,

@@ -33,7 +33,7 @@ impl Bridge {
         Self {
             client: Client::new(),
             scenario: scenario.clone(),
-            controller: Controller::new(scenario.arm(), &config).expect("a controller"),
+            controller: Controller::new(&scenario.arm().parameters, &config).expect("a controller"),
             state: State::new(),
             velocity: VelocityEstimator::new(CORNER_HZ),
             start: None,

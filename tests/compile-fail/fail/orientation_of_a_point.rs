@@ -1,4 +1,4 @@
-//! A link has an orientation, a point has none.
+//! A frame has an orientation, a point has none.
 
 use arms::LWR_IV_FLANGE;
 use controller_core::{Axes, Task, TaskGains};

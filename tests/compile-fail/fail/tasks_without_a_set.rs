@@ -3,7 +3,7 @@
 use controller_core::{Axes, ControllerConfig, Link, NullSpace, Task, TaskGains};
 
 fn main() {
-    let task = Task::orientation(Link::L7, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
+    let task = Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(400.0, 40.0));
     let _ = ControllerConfig {
         tasks: [task],
         null_space: NullSpace::diagonal([1.0; 7], [1.0; 7]),

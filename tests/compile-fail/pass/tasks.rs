@@ -5,7 +5,7 @@ use controller_core::{Axes, ConfigError, Link, LinkPoint, Task, TaskGains, TaskS
 
 const GAINS: TaskGains = TaskGains::uniform(400.0, 40.0);
 const FLANGE: Task = Task::position(LWR_IV_FLANGE, Axes::XYZ, GAINS);
-const TOOL: Task = Task::orientation(Link::L7, Axes::Z, GAINS);
+const TOOL: Task = Task::orientation(Link::L7.frame(), Axes::Z, GAINS);
 const ELBOW: LinkPoint = LinkPoint {
     link: Link::L3,
     offset: [0.0; 3],

@@ -17,7 +17,7 @@ use crate::random::States;
 pub type Spec = (Tracked, &'static str);
 
 const FLANGE_POSITION: Tracked = Tracked::Position(FLANGE);
-const FLANGE_ORIENTATION: Tracked = Tracked::Orientation(Link::L7);
+const FLANGE_ORIENTATION: Tracked = Tracked::Orientation(Link::L7.frame());
 const WRIST_POSITION: Tracked = Tracked::Position(WRIST);
 const ELBOW_POSITION: Tracked = Tracked::Position(ELBOW);
 

@@ -198,6 +198,8 @@ fn observer_gain_cycle_and_dead_time_have_their_ranges() {
 #[test]
 fn damping_too_strong_for_the_cycle_is_refused_with_joint_value_and_posture() {
     let (error, text) = refused(|config| config.dead_cycles = 1);
+    let named = error.named(&arms::IIWA_7).to_string();
+    assert_eq!(named, text.replacen("joint 3", "A3", 1));
     match error {
         ConfigError::Damping {
             joint,

@@ -17,7 +17,7 @@ use super::{at, start};
 fn both() -> ControllerConfig {
     with_tasks(&[
         Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS),
-        Task::orientation(Link::L7, Axes::XYZ, REFERENCE_GAINS),
+        Task::orientation(Link::L7.frame(), Axes::XYZ, REFERENCE_GAINS),
     ])
 }
 
@@ -248,7 +248,7 @@ fn a_reset_takes_the_place_anew_and_a_gap_does_not() {
 #[test]
 fn a_place_of_another_kind_is_taken_anew() {
     let position = Task::position(FLANGE, Axes::XYZ, REFERENCE_GAINS);
-    let orientation = Task::orientation(Link::L7, Axes::XYZ, REFERENCE_GAINS);
+    let orientation = Task::orientation(Link::L7.frame(), Axes::XYZ, REFERENCE_GAINS);
     let [first, second] = [position, orientation].map(|task| {
         let config = with_tasks(&[task]);
         Controller::<f64>::new(&LWR_IV, &config).expect("a valid configuration")

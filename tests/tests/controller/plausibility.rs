@@ -146,3 +146,32 @@ fn each_wrong_reference_is_named() {
         "implausible: desired speed [m/s] of level 1 is 1e300; allowed 0 to 20"
     );
 }
+
+/// A joint is called by its number, or as the maker of the arm calls it; a level is a level
+/// with any arm.
+#[test]
+fn faults_name_joints_as_their_maker_does() {
+    let fault = |quantity, index| Fault {
+        kind: FaultKind::Implausible,
+        quantity,
+        index,
+        value: 7.0,
+        min: -1.0,
+        max: 1.0,
+    };
+    let speed = fault(Quantity::Speed, 4);
+    let rest = "is 7; allowed -1 to 1";
+    let numbered = format!("implausible: speed [rad/s] of joint 4 {rest}");
+    assert_eq!(speed.to_string(), numbered);
+    for arm in arms::ALL {
+        let named = format!("implausible: speed [rad/s] of {} {rest}", arm.links[3].name);
+        assert_eq!(speed.named(arm).to_string(), named);
+        for (quantity, index) in [(Quantity::TargetSpeed, 2), (Quantity::Interval, 0)] {
+            let other = fault(quantity, index);
+            assert_eq!(other.named(arm).to_string(), other.to_string());
+        }
+        // An index that no joint has is shown as what it is.
+        let beyond = fault(Quantity::Speed, 8);
+        assert_eq!(beyond.named(arm).to_string(), beyond.to_string());
+    }
+}

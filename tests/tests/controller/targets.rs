@@ -20,7 +20,7 @@ use super::{at, resting, start};
 fn mixed() -> ControllerConfig {
     with_tasks(&[
         Task::position(FLANGE, Axes::X | Axes::Z, REFERENCE_GAINS),
-        Task::orientation(Link::L7, Axes::Y, REFERENCE_GAINS),
+        Task::orientation(Link::L7.frame(), Axes::Y, REFERENCE_GAINS),
     ])
 }
 

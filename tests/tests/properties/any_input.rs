@@ -134,7 +134,7 @@ fn believable<T: Real>(measurement: &Measurement<T>) -> bool {
 fn anything_in_good_torque_out<T: Real>() {
     let configuration = configuration(&[
         (Tracked::Position(FLANGE), "xyz"),
-        (Tracked::Orientation(Link::L7), "xz"),
+        (Tracked::Orientation(Link::L7.frame()), "xz"),
     ]);
     anything_into(&controller::<T>(&configuration));
     anything_into(&limited_controller::<T>(&configuration));

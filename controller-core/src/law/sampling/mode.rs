@@ -25,8 +25,10 @@ pub(super) const NONE: DampingRate = DampingRate {
     posture: [0.0; DOF],
 };
 
-/// The fastest mode at one posture \[rad\].
+/// The fastest mode at one posture \[rad\]. Behind a call: once in the flash, and its work set
+/// is not on the stack of a search several times.
 #[must_use]
+#[inline(never)]
 pub fn mode_at<T: Real>(
     arm: &ArmModel<T>,
     damping: &JointMatrix<T>,
@@ -117,7 +119,7 @@ fn in_parent<T: Real>(link: &LinkModel<T>, angle: T, x: &Matrix4<T>) -> Matrix4<
 /// its mode.
 #[inline(never)]
 fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, usize) {
-    let (rate, whitened) = largest_eigenpair(&factor.whiten(damping));
+    let (rate, whitened) = largest_eigenpair(&mut factor.whiten(damping));
     let mode = factor.solve_upper(&whitened);
     let power = mode.component_mul(&(damping * mode));
     let mut joint = 0;

@@ -40,17 +40,14 @@ pub(crate) fn ranges<T: Real>(arm: &ArmModel<T>) -> [[f64; 2]; DOF] {
     ranges
 }
 
-/// The postures of the net \[rad\].
-fn net<T: Real>(arm: &ArmModel<T>) -> impl Iterator<Item = [f64; DOF]> {
-    let ranges = ranges(arm);
-    (0..NET).map(move |n| {
-        let mut posture = [0.0; DOF];
-        for ((angle, [min, max]), share) in posture.iter_mut().zip(&ranges).zip(&SHARES) {
-            let place = 0.5 + share * n as f64;
-            *angle = min + (max - min) * (place - libm::floor(place));
-        }
-        posture
-    })
+/// Posture `n` of the net \[rad\].
+fn knot(ranges: &[[f64; 2]; DOF], n: usize) -> [f64; DOF] {
+    let mut posture = [0.0; DOF];
+    for ((angle, [min, max]), share) in posture.iter_mut().zip(ranges).zip(&SHARES) {
+        let place = 0.5 + share * n as f64;
+        *angle = min + (max - min) * (place - libm::floor(place));
+    }
+    posture
 }
 
 /// The fastest mode the search finds. Its time is bounded: at most
@@ -58,32 +55,36 @@ fn net<T: Real>(arm: &ArmModel<T>) -> impl Iterator<Item = [f64; DOF]> {
 pub(super) fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
     let ranges = ranges(arm);
     let mut places = [NONE; CLIMBS];
-    for posture in net(arm) {
-        keep_worst(&mut places, mode_at(arm, damping, posture));
+    for n in 0..NET {
+        keep_worst(&mut places, &mode_at(arm, damping, knot(&ranges, n)));
     }
     let mut summits = [NONE; LAST_CLIMBS];
     for place in &places {
-        keep_worst(&mut summits, climbed(arm, damping, &ranges, place, ROUNDS));
+        keep_worst(&mut summits, &climbed(arm, damping, &ranges, place, ROUNDS));
     }
-    let mut fastest = [NONE];
+    let mut fastest = NONE;
     for summit in &summits {
         let last = climbed(arm, damping, &ranges, summit, LAST_ROUNDS);
-        keep_worst(&mut fastest, last);
+        if last.rate > fastest.rate {
+            fastest = last;
+        }
     }
-    let [fastest] = fastest;
     fastest
 }
 
-/// Puts a mode among the worst ones seen, worst first, if it belongs there.
-fn keep_worst(worst: &mut [DampingRate], mut mode: DampingRate) {
+/// Puts a mode among the worst ones seen, worst first, if it belongs there. Once in the flash.
+#[inline(never)]
+fn keep_worst(worst: &mut [DampingRate], mode: &DampingRate) {
+    let mut next = *mode;
     for place in worst {
-        if mode.rate > place.rate {
-            core::mem::swap(place, &mut mode);
+        if next.rate > place.rate {
+            next = core::mem::replace(place, next);
         }
     }
 }
 
 /// Coordinate ascent within the ranges; the steps halve when no joint gains.
+#[inline(never)]
 fn climbed<T: Real>(
     arm: &ArmModel<T>,
     damping: &JointMatrix<T>,

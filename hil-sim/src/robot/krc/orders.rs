@@ -45,9 +45,9 @@ impl Krc {
                 ((position[joint] - q[joint]).abs(), self.options.jump_rad)
             };
             if moved > allowed {
+                let name = self.joints[joint];
                 self.refuse(format_args!(
-                    "jntPos of joint {} jumps by {:.1} mrad; allowed: {:.1}",
-                    joint + 1,
+                    "jntPos of {name} jumps by {:.1} mrad; allowed: {:.1}",
                     moved * 1e3,
                     allowed * 1e3
                 ));
@@ -61,12 +61,13 @@ impl Krc {
         let Some(torque) = &order.torque else {
             return Ok(());
         };
-        for (joint, (torque, &bound)) in (1..).zip(torque.iter().zip(&self.torque_bound)) {
+        for (index, joint) in self.joints.into_iter().enumerate() {
+            let (torque, bound) = (torque[index], self.torque_bound[index]);
             // What is no number is not meant either.
             let meant = torque.abs() <= bound;
             if !meant {
                 self.refuse(format_args!(
-                    "addJntTrq of joint {joint} is {torque:.1} Nm; allowed: {bound:.0}"
+                    "addJntTrq of {joint} is {torque:.1} Nm; allowed: {bound:.0}"
                 ));
                 return Err(Refusal::Torque);
             }

@@ -1,0 +1,277 @@
+//! The arm of a file: a table of its maker by name, mounted, with a tool.
+
+use controller_core::arm::{ArmError, ArmModel, ArmParameters, Pose, Tool};
+use controller_core::joint::{DOF, Matrix3, Vector3};
+use controller_core::real::Real;
+use controller_core::{LinkFrame, LinkPoint};
+use serde::Deserialize;
+
+use crate::invalid::Invalid;
+use crate::ranges::{ANGLE_DEG, INERTIA_KG_M2, OFFSET_M, Range, TOOL_MASS_KG};
+
+/// Name of the point in which the frame of a tool has its origin.
+pub const TOOL_POINT: &str = "tool";
+
+/// How the base plate stands in a room whose z axis points up. The base-plate frame stands
+/// with it: gravity is turned into that frame, and all else there stays what it is.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mount {
+    /// Roll, pitch, yaw of the base-plate frame \[deg\]: turns about x, then y, then z of the
+    /// room, Rz(yaw) Ry(pitch) Rx(roll). So have it URDF and ROS; KUKA's A, B, C are yaw, pitch,
+    /// roll.
+    pub rpy_deg: [f64; 3],
+}
+
+/// What is fixed to the flange, as one body.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToolSpec {
+    /// Origin of the tool frame in the flange \[m\].
+    #[serde(default)]
+    pub shift_m: [f64; 3],
+    /// Roll, pitch, yaw of the tool frame in the flange \[deg\], as those of a [`Mount`].
+    #[serde(default)]
+    pub rpy_deg: [f64; 3],
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+    /// Centre of mass \[m\], tool frame.
+    pub center_of_mass_m: [f64; 3],
+    /// Inertia about the centre of mass \[kg m2\], axes of the tool frame: Ixx Ixy Ixz Iyy
+    /// Iyz Izz.
+    pub inertia_kg_m2: [f64; 6],
+}
+
+/// Rotation from a frame to its parent by roll, pitch and yaw \[deg\], by rows.
+fn rotation(rpy_deg: [f64; 3]) -> [[f64; 3]; 3] {
+    // Right angles are exact, so that zeros stay zeros.
+    let exact = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+    let [(sr, cr), (sp, cp), (sy, cy)] = rpy_deg.map(|angle| {
+        let (sine, cosine) = angle.to_radians().sine_cosine();
+        (exact(sine), exact(cosine))
+    });
+    let x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
+    let y = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
+    let z = Matrix3::new(cy, -sy, 0.0, sy, cy, 0.0, 0.0, 0.0, 1.0);
+    // nalgebra gives columns.
+    (z * y * x).transpose().into()
+}
+
+/// An arm as it stands: the table with gravity as it is mounted and with its tool.
+#[derive(Clone, Debug)]
+pub struct EquippedArm {
+    /// What plant and controller are made from.
+    pub parameters: ArmParameters,
+    tool: Option<Tool>,
+}
+
+impl EquippedArm {
+    /// As in the table, without a tool.
+    #[must_use]
+    pub fn of(table: &ArmParameters) -> Self {
+        Self {
+            parameters: *table,
+            tool: None,
+        }
+    }
+
+    /// The arm called `robot` in the crate `arms`, with what a file says of it.
+    ///
+    /// # Errors
+    /// An unknown name; angles, masses, lengths outside their ranges; a body that cannot be.
+    pub fn new(
+        robot: &str,
+        mount: Option<&Mount>,
+        tool: Option<&ToolSpec>,
+    ) -> Result<Self, Invalid> {
+        let table = arms::by_name(robot).ok_or_else(|| {
+            let known = arms::ALL.map(|arm| arm.name);
+            Invalid::name("robot", robot, &known)
+        })?;
+        let mut arm = Self::of(table);
+        if let Some(mount) = mount {
+            each(ANGLE_DEG, "rpy_deg", &mount.rpy_deg).map_err(|error| error.in_table("mount"))?;
+            arm.parameters.gravity = mount.gravity(&table.gravity);
+        }
+        if let Some(spec) = tool {
+            let tool = spec.tool(table).map_err(|error| error.in_table("tool"))?;
+            arm.parameters = arm.parameters.with_tool(&tool);
+            arm.tool = Some(tool);
+        }
+        Ok(arm)
+    }
+
+    /// The point with this name: one of the table, or that of the tool.
+    #[must_use]
+    pub fn point(&self, name: &str) -> Option<LinkPoint> {
+        let tool = self.tool.as_ref().filter(|_| name == TOOL_POINT);
+        let point = tool.map(|tool| self.parameters.tool_point(tool));
+        point.or_else(|| self.parameters.point(name))
+    }
+
+    /// The frame of the tool; none without one.
+    #[must_use]
+    pub fn tool_frame(&self) -> Option<LinkFrame> {
+        let tool = self.tool.as_ref();
+        tool.map(|tool| self.parameters.tool_frame(tool))
+    }
+
+    /// The names of all points, base to tool.
+    #[must_use]
+    pub fn point_names(&self) -> Vec<&'static str> {
+        let tool = self.tool.as_ref().map(|_| TOOL_POINT);
+        let named = self.parameters.points.iter().map(|point| point.name);
+        named.chain(tool).collect()
+    }
+
+    /// The name of a point; none of one without.
+    #[must_use]
+    pub fn name_of(&self, point: &LinkPoint) -> Option<&'static str> {
+        let mut names = self.point_names().into_iter();
+        names.find(|name| self.point(name).as_ref() == Some(point))
+    }
+
+    /// The maker's name of the joint with this index, from 0.
+    #[must_use]
+    pub fn joint(&self, index: usize) -> &'static str {
+        self.parameters.links[index].name
+    }
+
+    /// The maker's names of the joints, base to flange.
+    #[must_use]
+    pub fn joints(&self) -> [&'static str; DOF] {
+        self.parameters.links.map(|link| link.name)
+    }
+}
+
+impl Mount {
+    /// Gravity in base-plate axes \[m/s2\], as strong as `of_table`.
+    fn gravity(&self, of_table: &[f64; 3]) -> [f64; 3] {
+        let strength = Vector3::from(*of_table).norm();
+        let [_, _, up] = rotation(self.rpy_deg);
+        // R^T (0, 0, -g); never -0.
+        up.map(|share| 0.0 - strength * share)
+    }
+}
+
+impl ToolSpec {
+    /// The tool, which must be one that a body can be.
+    fn tool(&self, arm: &ArmParameters) -> Result<Tool, Invalid> {
+        each(OFFSET_M, "shift_m", &self.shift_m)?;
+        each(ANGLE_DEG, "rpy_deg", &self.rpy_deg)?;
+        TOOL_MASS_KG.check("mass_kg", self.mass_kg)?;
+        each(OFFSET_M, "center_of_mass_m", &self.center_of_mass_m)?;
+        each(INERTIA_KG_M2, "inertia_kg_m2", &self.inertia_kg_m2)?;
+        let tool = Tool {
+            pose: Pose {
+                rotation: rotation(self.rpy_deg),
+                shift: self.shift_m,
+            },
+            mass: self.mass_kg,
+            com: self.center_of_mass_m,
+            inertia: self.inertia_kg_m2,
+        };
+        // An arm whose last link is the tool alone is checked as any: joined with that link
+        // an impossible body could pass.
+        let mut alone = *arm;
+        let [.., link] = &mut alone.links;
+        (link.mass, link.com, link.inertia) = (tool.mass, tool.com, tool.inertia);
+        match ArmModel::<f64>::new(&alone) {
+            Ok(_) => Ok(tool),
+            Err(ArmError::ImpossibleInertia { .. }) => Err(Invalid::new(
+                "inertia_kg_m2",
+                format_args!("{:?}", self.inertia_kg_m2),
+                "Ixx, Ixy, Ixz, Iyy, Iyz, Izz of a body: principal moments of at least 0, none \
+                 above the sum of the other two",
+            )),
+            Err(error) => Err(Invalid::line(error)),
+        }
+    }
+}
+
+fn each(range: Range<f64>, name: &str, values: &[f64]) -> Result<(), Invalid> {
+    values
+        .iter()
+        .try_for_each(|&value| range.check(name, value).map(drop))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use controller_core::Link;
+
+    fn mounted(robot: &str, rpy_deg: [f64; 3]) -> ArmParameters {
+        let mount = Mount { rpy_deg };
+        let arm = EquippedArm::new(robot, Some(&mount), None);
+        arm.expect("angles within their range").parameters
+    }
+
+    #[test]
+    fn gravity_is_what_a_plumb_line_shows_in_the_plate() {
+        for (rpy, gravity) in [
+            ([0.0, 0.0, 0.0], [0.0, 0.0, -9.81]),
+            // Down is where the plate of a ceiling looks.
+            ([180.0, 0.0, 0.0], [0.0, 0.0, 9.81]),
+            ([0.0, 180.0, 0.0], [0.0, 0.0, 9.81]),
+            // z of the plate along x of the room: its x points down.
+            ([0.0, 90.0, 0.0], [9.81, 0.0, 0.0]),
+            // z of the plate along -y of the room: its y points up.
+            ([90.0, 0.0, 0.0], [0.0, -9.81, 0.0]),
+            // Where the wall looks makes no difference.
+            ([90.0, 0.0, 137.0], [0.0, -9.81, 0.0]),
+        ] {
+            assert_eq!(mounted("lwr_iv", rpy).gravity, gravity, "{rpy:?}");
+        }
+        // Tilted by 30 deg about y: closed form.
+        let [x, y, z] = mounted("fr3", [0.0, 30.0, 0.0]).gravity;
+        let off = (x - 4.905).abs() + y.abs() + (z + 9.81 * 0.75_f64.sqrt()).abs();
+        assert!(off < 1e-14, "{x} {y} {z}");
+    }
+
+    #[test]
+    fn a_mount_says_where_down_is_whatever_the_table_says() {
+        // Its table has it at the side of a torso.
+        let table = arms::by_name("openarm_v10_right").expect("a table");
+        assert_eq!(table.gravity, [0.0, -9.81, 0.0]);
+        assert_eq!(mounted(table.name, [0.0; 3]).gravity, [0.0, 0.0, -9.81]);
+        assert_eq!(mounted(table.name, [90.0, 0.0, 0.0]).gravity, table.gravity);
+    }
+
+    #[test]
+    fn turns_are_about_fixed_axes_in_the_order_x_y_z() {
+        // x to z by a quarter turn about -y ..
+        assert_eq!(
+            rotation([0.0, -90.0, 0.0]),
+            [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+        );
+        // .. and y: first about x to z, then about the parent's z, which leaves it.
+        let [_, _, z] = rotation([90.0, 0.0, 90.0]);
+        assert_eq!(z, [0.0, 1.0, 0.0]);
+        let turn = Matrix3::from(rotation([31.0, -57.0, 143.0])).transpose();
+        assert!((turn * turn.transpose() - Matrix3::identity()).amax() < 1e-15);
+        assert!((turn.determinant() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_tool_is_a_point_of_the_arm_and_part_of_its_last_link() {
+        let spec = ToolSpec {
+            shift_m: [0.0, 0.0, 0.1],
+            rpy_deg: [0.0, 0.0, 90.0],
+            mass_kg: 0.5,
+            center_of_mass_m: [0.02, 0.0, 0.0],
+            inertia_kg_m2: [1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3],
+        };
+        let bare = EquippedArm::new("lwr_iv", None, None).expect("a table");
+        let arm = EquippedArm::new("lwr_iv", None, Some(&spec)).expect("a tool");
+        assert_eq!(bare.point(TOOL_POINT), None);
+        let point = arm.point(TOOL_POINT).expect("the tool");
+        assert_eq!(point.link, Link::L7);
+        assert!((point.offset[2] - 0.178).abs() < 1e-15);
+        assert_eq!(arm.name_of(&point), Some(TOOL_POINT));
+        assert_eq!(arm.point("elbow"), bare.point("elbow"));
+        let [last, before] = [&arm, &bare].map(|arm| arm.parameters.links[DOF - 1]);
+        assert!((last.mass - before.mass - 0.5).abs() < 1e-15);
+        // The tool's x axis is y of the flange: 0.5 kg at 0.02 m.
+        assert!((last.com[1] * last.mass - 0.01).abs() < 1e-15);
+    }
+}
