@@ -143,8 +143,10 @@ impl<T: Real> Resolver<T> {
             return Err(ConfigError::ResolverGain { value: gain, bound });
         }
         let damping = T::from_f64(2.0 / cycle_s);
+        let mut levels = Levels::new(tasks, &arm);
+        levels.set_gains(damping * T::from_f64(gain), damping);
         Ok(Self {
-            levels: Levels::new(tasks, &arm).with_gains(damping * T::from_f64(gain), damping),
+            levels,
             arm,
             cycle_s: T::from_f64(cycle_s),
         })

@@ -47,11 +47,12 @@ impl<T: Real> Controller<T> {
         if config.null_space.posture != Posture::Constant {
             return Err(ConfigError::IntegratedPosture);
         }
-        let mut controller = Self::made(arm, config, Law::within_limits())?;
-        controller.levels = Levels::new(&config.tasks, &controller.arm);
-        let limits = joint_limits(arm, &controller.arm, config.cycle_s, config.dead_cycles);
-        controller.bounds = JointBounds::new(&controller.arm, &limits);
-        Ok(controller)
+        Self::made(arm, config, |model, fastest_mode| {
+            let mut controller = Self::converted(model, config, fastest_mode, Law::within_limits());
+            let limits = joint_limits(arm, model, config.cycle_s, config.dead_cycles);
+            controller.bounds = JointBounds::new(model, &limits);
+            controller
+        })
     }
 
     /// The exact law of the paper: singularities, ranges and speed limits are not its
@@ -61,27 +62,42 @@ impl<T: Real> Controller<T> {
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be.
     pub fn exact(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
-        Self::made(arm, config, Law::exact())
+        Self::made(arm, config, |model, fastest_mode| {
+            Self::exactly(model, config, fastest_mode)
+        })
     }
 
+    /// What `convert` makes of the model, all checks passed.
+    #[inline(always)]
     fn made(
         arm: &ArmParameters,
         config: &ControllerConfig,
-        law: Law<T>,
+        convert: impl FnOnce(&ArmModel<T>, DampingRate) -> Self,
     ) -> Result<Self, ConfigError> {
         match &ArmModel::new(arm) {
-            Ok(arm) => match config.validate(arm) {
-                Ok(fastest_mode) => Ok(Self::converted(arm, config, fastest_mode, law)),
+            Ok(model) => match config.validate(model) {
+                Ok(fastest_mode) => Ok(convert(model, fastest_mode)),
                 Err(error) => Err(error),
             },
             Err(error) => Err(ConfigError::Arm(*error)),
         }
     }
 
+    /// The exact law, without a check.
+    pub(super) fn exactly(
+        arm: &ArmModel<T>,
+        config: &ControllerConfig,
+        fastest_mode: DampingRate,
+    ) -> Self {
+        let mut controller = Self::converted(arm, config, fastest_mode, Law::exact());
+        controller.levels.follow_every_error();
+        controller
+    }
+
     /// No check, no bounds of joints. Behind a call, so that the parts are made in the place of
     /// the result and nowhere else.
     #[inline(never)]
-    pub(super) fn converted(
+    fn converted(
         arm: &ArmModel<T>,
         config: &ControllerConfig,
         fastest_mode: DampingRate,
@@ -91,7 +107,7 @@ impl<T: Real> Controller<T> {
         Self {
             arm: *arm,
             law,
-            levels: Levels::new(&config.tasks, arm).exact(),
+            levels: Levels::new(&config.tasks, arm),
             bounds: JointBounds::none(),
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),

@@ -3,7 +3,6 @@
 use super::config::ControllerConfig;
 use super::controller::Controller;
 use super::data::{Data, Input};
-use super::stages::Law;
 use crate::arm::{ArmModel, ArmParameters};
 use crate::error::ConfigError;
 use crate::joint::DOF;
@@ -45,7 +44,7 @@ impl<T: Real> Inspection<T> {
             posture: [0.0; DOF],
         };
         Ok(Self {
-            controller: Controller::converted(&arm, &config, unknown, Law::exact()),
+            controller: Controller::exactly(&arm, &config, unknown),
         })
     }
 

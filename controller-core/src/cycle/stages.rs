@@ -3,6 +3,8 @@
 
 use super::controller::Controller;
 use super::data::{Data, Input};
+use crate::arm::ArmModel;
+use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
 use crate::law::allocation::TorqueLimits;
@@ -201,17 +203,17 @@ fn joint_state<T: Real>(_: &Controller<T>, input: &Input<'_, T>, data: &mut Data
 }
 
 fn kinematics<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    set_kinematics(controller, &data.joints, &mut data.kinematics);
+    set_kinematics(&controller.arm, &data.joints, &mut data.kinematics);
 }
 
 /// Behind a call: it is in the flash once, for the cycle and for references.
 #[inline(never)]
 fn set_kinematics<T: Real>(
-    controller: &Controller<T>,
+    arm: &ArmModel<T>,
     joints: &JointState<T>,
     kinematics: &mut Kinematics<T>,
 ) {
-    kinematics.update(&controller.arm, joints);
+    kinematics.update(arm, joints);
 }
 
 /// The result of that stage alone, for references: they need no more of a cycle.
@@ -220,14 +222,27 @@ pub(super) fn kinematics_at<T: Real>(
     joints: &JointState<T>,
 ) -> Kinematics<T> {
     let mut kinematics = Kinematics::new();
-    set_kinematics(controller, joints, &mut kinematics);
+    set_kinematics(&controller.arm, joints, &mut kinematics);
     kinematics
 }
 
-#[inline(never)]
 fn dynamics<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    data.dynamics
-        .update(&controller.arm, &data.kinematics, &data.joints);
+    set_dynamics(
+        &controller.arm,
+        &data.kinematics,
+        &data.joints,
+        &mut data.dynamics,
+    );
+}
+
+#[inline(never)]
+fn set_dynamics<T: Real>(
+    arm: &ArmModel<T>,
+    kinematics: &Kinematics<T>,
+    joints: &JointState<T>,
+    dynamics: &mut Dynamics<T>,
+) {
+    dynamics.update(arm, kinematics, joints);
 }
 
 fn holding_torque<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
@@ -258,7 +273,6 @@ fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
     );
 }
 
-#[inline(never)]
 fn task_rows<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.rows.update(
         &controller.levels,

@@ -49,8 +49,8 @@ impl<T: Real> TaskRows<T> {
         }
     }
 
-    /// Rows of all `levels`, level by level.
-    #[inline]
+    /// Rows of all `levels`, level by level. Behind a call: what it reads lies far apart.
+    #[inline(never)]
     pub(crate) fn update(
         &mut self,
         levels: &Levels<T>,

@@ -226,17 +226,18 @@ pub(crate) struct Level<T: Real> {
 impl<T: Real> Level<T> {
     /// At the place `number`, counted from 0, with its rows from `start` on.
     fn new(task: &Task, number: usize, start: usize, arm: &ArmModel<T>) -> Self {
-        let mut reach = T::ZERO;
-        let tracked = match task.tracked {
-            Tracked::Position(LinkPoint { link, offset }) => {
-                reach = arm.reach(&LinkPoint { link, offset }) + T::from_f64(REACH_MARGIN_M);
-                LevelPoint::Position(link, Vector3::from(offset.map(T::from_f64)))
+        let (tracked, reach) = match task.tracked {
+            Tracked::Position(point) => {
+                let offset = Vector3::from(point.offset.map(T::from_f64));
+                let reach = arm.reach(&point) + T::from_f64(REACH_MARGIN_M);
+                (LevelPoint::Position(point.link, offset), reach)
             }
             Tracked::Orientation(LinkFrame { link, rotation }) => {
                 // nalgebra takes columns.
                 let rotation = nalgebra::Matrix3::from(rotation).transpose();
                 let turn = orientation::unit(&orientation::of_rotation(&rotation));
-                LevelPoint::Orientation(link, turn.map(T::from_f64))
+                let turn = turn.map(T::from_f64);
+                (LevelPoint::Orientation(link, turn), T::ZERO)
             }
         };
         // The others are not read: whatever stands there stays out.
@@ -246,7 +247,7 @@ impl<T: Real> Level<T> {
                 T::from_f64(if both { gain[row][column] } else { 0.0 })
             })
         };
-        let mut level = Self {
+        Self {
             tracked,
             axes: task.axes,
             reach,
@@ -254,23 +255,9 @@ impl<T: Real> Level<T> {
             damping: used(&task.gains.damping),
             start,
             size: task.axes.count().min(3),
-            row_damping: [[T::ZERO; 3]; 3],
+            row_damping: by_rows(&task.gains.damping, task.axes),
             length: T::from_f64(length(task)),
             filters: LevelFilters::new(task, number),
-        };
-        level.set_row_damping();
-        level
-    }
-
-    fn set_row_damping(&mut self) {
-        let mut rows = (0..3).filter(|&axis| self.axes.contains(axis));
-        let axes: [Option<usize>; 3] = core::array::from_fn(|_| rows.next());
-        for (damping, row) in self.row_damping.iter_mut().zip(axes) {
-            for (damping, column) in damping.iter_mut().zip(axes) {
-                if let (Some(row), Some(column)) = (row, column) {
-                    *damping = self.damping[(row, column)];
-                }
-            }
         }
     }
 
@@ -288,6 +275,19 @@ impl<T: Real> Level<T> {
     }
 }
 
+/// A gain by the rows of the controlled axes, zeros behind the last one.
+fn by_rows<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> [[T; 3]; 3] {
+    let mut rows = [[T::ZERO; 3]; 3];
+    let used = gain.iter().zip(axes.flags()).filter(|(_, used)| *used);
+    for (row, (gain, _)) in rows.iter_mut().zip(used) {
+        let used = gain.iter().zip(axes.flags()).filter(|(_, used)| *used);
+        for (entry, (&gain, _)) in row.iter_mut().zip(used) {
+            *entry = T::from_f64(gain);
+        }
+    }
+    rows
+}
+
 /// All levels in the precision of the controller, highest priority first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Levels<T: Real> {
@@ -297,41 +297,42 @@ pub(crate) struct Levels<T: Real> {
 }
 
 impl<T: Real> Levels<T> {
+    /// Behind a call, so that the levels are made in the place of the result.
+    #[inline(never)]
     pub fn new(set: &TaskSet, arm: &ArmModel<T>) -> Self {
         const UNUSED: Task =
             Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(1.0, 1.0));
         let mut start = 0;
         let mut tasks = set.tasks().iter();
-        let mut next = |number| {
-            let level = Level::new(tasks.next().unwrap_or(&UNUSED), number, start, arm);
-            start += level.size;
-            level
-        };
         Self {
-            levels: core::array::from_fn(&mut next),
+            levels: core::array::from_fn(|number| {
+                let task = tasks.next().unwrap_or(&UNUSED);
+                let from = start;
+                start += task.axes.count();
+                Level::new(task, number, from, arm)
+            }),
             count: set.count,
             shoulder: arm.shoulder(),
         }
     }
 
-    /// The same levels with K_p = `stiffness` \[1/s2\] and K_d = `damping` \[1/s\] on every
-    /// axis that they control.
-    pub fn with_gains(mut self, stiffness: T, damping: T) -> Self {
+    /// With K_p = `stiffness` \[1/s2\] and K_d = `damping` \[1/s\] on every axis that a level
+    /// controls, errors followed however large.
+    pub fn set_gains(&mut self, stiffness: T, damping: T) {
         for level in &mut self.levels {
             let uniform =
                 |gain: T| Matrix3::from_diagonal(&level.axes.select(&Vector3::repeat(gain)));
             (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
         }
-        self.exact()
+        self.follow_every_error();
     }
 
-    /// The same levels, which follow every error however large.
-    pub fn exact(mut self) -> Self {
+    /// Every error is followed, however large.
+    pub fn follow_every_error(&mut self) {
         for level in &mut self.levels {
             // Farther than any error that is believed.
             level.filters.error_speed = T::from_f64(1e15);
         }
-        self
     }
 
     /// Where the distance of targets counts from \[m\], base-plate frame.

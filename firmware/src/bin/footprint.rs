@@ -1,6 +1,7 @@
 //! How much flash the core takes: constructor, cycle and record and nothing else, in
-//! the precision that the features `footprint-f64` and `footprint-f32` choose. Built
-//! without either it is what every image has; `cargo bench-m7` reports the difference.
+//! the precision that the features `footprint-f64` and `footprint-f32` choose, with the law
+//! within limits or, by `footprint-exact`, the exact one. Built without a precision it is what
+//! every image has; `cargo bench-m7` reports the difference.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -24,7 +25,12 @@ mod core_of {
         measurement: &Measurement<T>,
         reference: &Reference<T>,
     ) -> Result<(), ConfigError> {
-        let controller = Controller::new(black_box(&LWR_IV), black_box(config))?;
+        let make = if cfg!(feature = "footprint-exact") {
+            Controller::exact
+        } else {
+            Controller::new
+        };
+        let controller = make(black_box(&LWR_IV), black_box(config))?;
         let mut state = State::new();
         let mut recorder = Recorder::<T, 4>::new();
         let step = controller.step(&mut state, black_box(measurement), black_box(reference));
