@@ -3,6 +3,7 @@
 
 mod brake;
 pub mod config;
+mod construction;
 mod controller;
 mod data;
 pub mod delay;

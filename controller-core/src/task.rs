@@ -3,17 +3,19 @@
 
 mod axes;
 mod decay;
+mod filters;
 mod followed;
+pub(crate) mod level;
 mod level_limits;
 pub mod orientation;
 pub mod rows;
-pub(crate) mod set;
+mod set;
 mod target;
 pub mod trajectory;
 
 pub use axes::Axes;
 pub use followed::Followed;
+pub(crate) use level::{LevelPoint, Levels};
 pub use level_limits::LevelLimits;
-pub(crate) use set::{LevelPoint, Levels};
 pub use set::{Task, TaskGains, TaskSet, Tracked};
 pub use target::{Reference, Target};

@@ -1,7 +1,8 @@
 //! The stages of a cycle: one function per result, in order. This list is the one place
 //! where the cycle is composed.
 
-use super::controller::Controller;
+pub use super::controller::Run;
+use super::controller::{Controller, Law};
 use super::data::{Data, Input};
 use crate::arm::ArmModel;
 use crate::arm::dynamics::Dynamics;
@@ -84,9 +85,6 @@ impl StageName {
     }
 }
 
-/// A stage: reads results above its own, writes its own.
-pub type Run<T> = fn(&Controller<T>, &Input<'_, T>, &mut Data<T>);
-
 /// A stage with its name.
 pub type Stage<T> = (StageName, Run<T>);
 
@@ -151,28 +149,19 @@ impl<T: Real> Controller<T> {
     };
 }
 
-/// The law of a controller: [`Data::demand`] from what is observed and followed. By a pointer,
-/// so that a program has those laws in it that its controllers are made with.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Law<T: Real> {
-    /// Whether it is the one within limits.
-    pub limits: bool,
-    pub run: Run<T>,
+/// The law within limits, for a controller.
+pub(super) fn within_limits<T: Real>() -> Law<T> {
+    Law {
+        limits: true,
+        run: law_within_limits,
+    }
 }
 
-impl<T: Real> Law<T> {
-    pub fn within_limits() -> Self {
-        Self {
-            limits: true,
-            run: law_within_limits,
-        }
-    }
-
-    pub fn exact() -> Self {
-        Self {
-            limits: false,
-            run: exact_law,
-        }
+/// The exact law, for a controller.
+pub(super) fn exact<T: Real>() -> Law<T> {
+    Law {
+        limits: false,
+        run: exact_law,
     }
 }
 

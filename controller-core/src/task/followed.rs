@@ -15,8 +15,8 @@
 //! until now is that of the arm.
 
 use super::decay::Decay;
+use super::level::{LevelPoint, Levels};
 use super::orientation::{self, Quaternion};
-use super::set::{LevelPoint, Levels};
 use super::target::{Reference, Target};
 use super::trajectory::quintic;
 use crate::arm::kinematics::Kinematics;

@@ -1,7 +1,7 @@
 //! The stacked rows J, dJ/dt that all levels make together, and what they command.
 
 use super::followed::{Followed, Motion};
-use super::set::{Level, LevelPoint, Levels};
+use super::level::{Level, LevelPoint, Levels};
 use super::{Axes, orientation};
 use crate::arm::kinematics::{JacobianRows, Kinematics};
 use crate::fault::IndexSet;

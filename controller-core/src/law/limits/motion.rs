@@ -11,7 +11,7 @@ use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::motion::MotionSplit;
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
-use crate::task::set::Levels;
+use crate::task::level::Levels;
 
 /// The motion in whitened coordinates.
 #[derive(Clone, Copy, Debug)]

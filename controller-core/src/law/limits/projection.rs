@@ -22,8 +22,8 @@ use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::ranges::{DISTURBANCE_SMOOTHING, MAX_LEVELS, PIVOTS, SOFTENING_DISTURBANCE};
 use crate::real::Real;
+use crate::task::level::Levels;
 use crate::task::rows::TaskRows;
-use crate::task::set::Levels;
 
 /// The wish within the bounds, and what that does to the levels.
 #[derive(Clone, Copy, Debug)]

@@ -17,8 +17,8 @@ use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::Cholesky;
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
+use crate::task::level::{Level, Levels};
 use crate::task::rows::TaskRows;
-use crate::task::set::{Level, Levels};
 
 /// A direction of a level, and the row of the level in the same place.
 #[derive(Clone, Copy, Debug)]

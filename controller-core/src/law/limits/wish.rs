@@ -21,8 +21,8 @@ use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::Cholesky;
 use crate::ranges::{MAX_LEVELS, MAX_ROWS, RELEASE_DAMPING};
 use crate::real::Real;
+use crate::task::level::{Level, Levels};
 use crate::task::rows::TaskRows;
-use crate::task::set::{Level, Levels};
 
 /// What all stages ask for together.
 #[derive(Clone, Copy, Debug)]

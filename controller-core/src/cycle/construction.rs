@@ -1,0 +1,99 @@
+//! How a controller is made: arm and configuration validated, converted, and given a law.
+
+use super::brake::brake_rate;
+use super::config::ControllerConfig;
+use super::controller::{Controller, Law};
+use super::stages::{exact, within_limits};
+use crate::arm::{ArmModel, ArmParameters};
+use crate::error::ConfigError;
+use crate::joint::JointVector;
+use crate::law::limits::bounds::JointBounds;
+use crate::law::limits::joint_limits;
+use crate::law::null_space::{Compliance, Posture};
+use crate::law::sampling::DampingRate;
+use crate::real::Real;
+use crate::task::Levels;
+
+impl<T: Real> Controller<T> {
+    /// The law within limits ([`crate::law::limits`]). Validates arm and configuration and
+    /// converts them to the precision `T`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that cannot be.
+    pub fn new(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        if config.null_space.posture != Posture::Constant {
+            return Err(ConfigError::IntegratedPosture);
+        }
+        Self::made(arm, config, |model, fastest_mode| {
+            let mut controller = Self::converted(model, config, fastest_mode, within_limits());
+            let limits = joint_limits(arm, model, config.cycle_s, config.dead_cycles);
+            controller.bounds = JointBounds::new(model, &limits);
+            controller
+        })
+    }
+
+    /// The exact law of the paper: singularities, ranges and speed limits are not its
+    /// business; torques are cut joint by joint. An image that makes controllers in one way
+    /// only has the other law not in it.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first thing that cannot be.
+    pub fn exact(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        Self::made(arm, config, |model, fastest_mode| {
+            Self::exactly(model, config, fastest_mode)
+        })
+    }
+
+    /// What `convert` makes of the model, all checks passed.
+    #[inline(always)]
+    fn made(
+        arm: &ArmParameters,
+        config: &ControllerConfig,
+        convert: impl FnOnce(&ArmModel<T>, DampingRate) -> Self,
+    ) -> Result<Self, ConfigError> {
+        match &ArmModel::new(arm) {
+            Ok(model) => match config.validate(model) {
+                Ok(fastest_mode) => Ok(convert(model, fastest_mode)),
+                Err(error) => Err(error),
+            },
+            Err(error) => Err(ConfigError::Arm(*error)),
+        }
+    }
+
+    /// The exact law, without a check.
+    pub(super) fn exactly(
+        arm: &ArmModel<T>,
+        config: &ControllerConfig,
+        fastest_mode: DampingRate,
+    ) -> Self {
+        let mut controller = Self::converted(arm, config, fastest_mode, exact());
+        controller.levels.follow_every_error();
+        controller
+    }
+
+    /// No check, no bounds of joints. Behind a call, so that the parts are made in the place of
+    /// the result and nowhere else.
+    #[inline(never)]
+    fn converted(
+        arm: &ArmModel<T>,
+        config: &ControllerConfig,
+        fastest_mode: DampingRate,
+        law: Law<T>,
+    ) -> Self {
+        let cycle_s = T::from_f64(config.cycle_s);
+        Self {
+            arm: *arm,
+            law,
+            levels: Levels::new(&config.tasks, arm),
+            bounds: JointBounds::none(),
+            compliance: Compliance::new(&config.null_space),
+            observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
+            cycle_s,
+            dead_cycles: config.dead_cycles,
+            torque_step: arm.torque_rate_limit() * cycle_s,
+            brake_step: arm.brake_rate_limit() * cycle_s,
+            brake_rate: T::from_f64(brake_rate(config.cycle_s, config.dead_cycles)),
+            fastest_mode,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! [`LevelLimits`] as the law reads them: what takes the place of 1/z, and how far commands go.
+
+use super::level_limits::LevelLimits;
+use super::set::{Task, Tracked};
+use crate::joint::{Matrix3, Vector3};
+use crate::ranges::ORIENTATION_LENGTH;
+use crate::real::Real;
+
+/// 1/z down to a threshold, below it a line that ends at twice 1/threshold: what grew without
+/// bound meets an end, and does so without a kink.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Filter<T: Real> {
+    /// \[1/kg\].
+    pub threshold: T,
+    /// \[kg\].
+    pub inverse: T,
+}
+
+impl<T: Real> Filter<T> {
+    fn new(threshold: f64) -> Self {
+        Self {
+            threshold: T::from_f64(threshold),
+            inverse: T::from_f64(1.0 / threshold),
+        }
+    }
+
+    /// Of a mobility z \[1/kg\]: \[kg\].
+    #[inline(always)]
+    pub fn of(&self, z: T) -> T {
+        let z = z.larger(T::ZERO);
+        let exact = T::ONE / z.larger(self.threshold);
+        let line = (T::ONE + T::ONE - z * self.inverse) * self.inverse;
+        if z >= self.threshold { exact } else { line }
+    }
+}
+
+/// [`LevelLimits`] of a task with its gains, in the precision of the controller and for rows as
+/// they are: of orientations in rad, with mobilities in 1/(kg m2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LevelFilters<T: Real> {
+    pub drive: Filter<T>,
+    pub keep: Filter<T>,
+    /// Largest command \[m/s2\], or \[rad/s2\], along a direction that is lost.
+    lost_command: T,
+    /// 1/(3 z0) \[kg\]: from there on a command has no limit.
+    free: T,
+    /// zw^3 \[1/kg3\].
+    pub stiff_cubed: T,
+    /// K_d^-1 K_p \[1/s\], on the controlled axes: the speed that an error calls for.
+    pub approach: Matrix3<T>,
+    /// Most of it \[m/s\], or \[rad/s\].
+    pub error_speed: T,
+}
+
+impl<T: Real> LevelFilters<T> {
+    /// Of a task at the place `level`, counted from 0.
+    pub fn new(task: &Task, level: usize) -> Self {
+        let limits = task.limits.unwrap_or(match level {
+            0 => LevelLimits::FIRST,
+            _ => LevelLimits::BELOW,
+        });
+        let mut rate = 0.0;
+        for axis in 0..3 {
+            if task.axes.contains(axis) {
+                rate += task.gains.damping[axis][axis];
+            }
+        }
+        let rows = task.axes.count().max(1);
+        // Of the rows as they are: those of orientations are in 1/(kg m2).
+        let length = length(task);
+        let mobility = |limit: f64| limit / (length * length);
+        let z0 = mobility(limits.drive_mobility);
+        let stiff = mobility(limits.stiff_mobility);
+        Self {
+            drive: Filter::new(z0),
+            keep: Filter::new(mobility(limits.release_mobility)),
+            lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed / length),
+            free: T::from_f64(1.0 / (3.0 * z0)),
+            stiff_cubed: T::from_f64(stiff * stiff * stiff),
+            approach: approach(task).map(T::from_f64),
+            error_speed: T::from_f64(limits.error_speed / length),
+        }
+    }
+
+    /// Largest command \[m/s2\] along a direction of mobility z \[1/kg\].
+    #[inline(always)]
+    pub fn most_command(&self, z: T) -> T {
+        let lost = (T::ONE - z * self.free).larger(T::from_f64(1e-9));
+        self.lost_command / lost
+    }
+
+    /// Share of the error that a level may follow, given the error: at most 1.
+    #[inline(always)]
+    pub fn error_share(&self, error: &Vector3<T>) -> T {
+        let speed = self.approach * error;
+        let most = self.error_speed;
+        most / speed.dot(&speed).square_root().larger(most)
+    }
+}
+
+/// What a row of a task is multiplied by to be a way \[m\].
+pub(crate) fn length(task: &Task) -> f64 {
+    match task.tracked {
+        Tracked::Position(_) => 1.0,
+        Tracked::Orientation(_) => ORIENTATION_LENGTH,
+    }
+}
+
+/// K_d^-1 K_p on the controlled axes, zero elsewhere.
+fn approach(task: &Task) -> Matrix3<f64> {
+    let (mut damping, mut speeds) = (Matrix3::identity(), Matrix3::zeros());
+    for row in 0..3 {
+        for column in 0..3 {
+            if task.axes.contains(row) && task.axes.contains(column) {
+                damping[(row, column)] = task.gains.damping[row][column];
+                speeds[(row, column)] = task.gains.stiffness[row][column];
+            }
+        }
+    }
+    // Gauss and Jordan; K_d is positive definite and needs no other pivots.
+    for pivot in 0..3 {
+        for row in 0..3 {
+            if row != pivot {
+                let share = damping[(row, pivot)] / damping[(pivot, pivot)];
+                for column in 0..3 {
+                    damping[(row, column)] -= share * damping[(pivot, column)];
+                    speeds[(row, column)] -= share * speeds[(pivot, column)];
+                }
+            }
+        }
+    }
+    for row in 0..3 {
+        for column in 0..3 {
+            speeds[(row, column)] /= damping[(row, row)];
+        }
+    }
+    speeds
+}
