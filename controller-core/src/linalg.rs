@@ -188,17 +188,21 @@ impl<T: Real> Default for Cholesky<T> {
 }
 
 /// Largest eigenvalue of a symmetric matrix, which becomes diagonal, and its eigenvector, by
-/// cyclic Jacobi rotations: twelve sweeps, which for 7 x 7 is far beyond the point
-/// where nothing changes any more. For construction, not for the cycle.
+/// cyclic Jacobi rotations, until nothing changes any more: for 7 x 7 some six sweeps, at most
+/// twelve. For construction, not for the cycle.
 #[must_use]
 pub fn largest_eigenpair<T: Real>(a: &mut JointMatrix<T>) -> (T, JointVector<T>) {
     const SWEEPS: usize = 12;
     let mut vectors = JointMatrix::<T>::identity();
     for _ in 0..SWEEPS {
+        let mut changes = false;
         for p in 0..DOF {
             for q in p + 1..DOF {
-                rotate(a, &mut vectors, p, q);
+                changes |= rotate(a, &mut vectors, p, q);
             }
+        }
+        if !changes {
+            break;
         }
     }
     let mut best = 0;
@@ -214,12 +218,18 @@ pub fn largest_eigenpair<T: Real>(a: &mut JointMatrix<T>) -> (T, JointVector<T>)
     (a[(best, best)], vector)
 }
 
-/// The rotation in the plane (p, q) that makes a\[p, q\] zero.
-fn rotate<T: Real>(a: &mut JointMatrix<T>, vectors: &mut JointMatrix<T>, p: usize, q: usize) {
+/// The rotation in the plane (p, q) that makes a\[p, q\] zero; false where it would change nothing.
+fn rotate<T: Real>(
+    a: &mut JointMatrix<T>,
+    vectors: &mut JointMatrix<T>,
+    p: usize,
+    q: usize,
+) -> bool {
     let off = a[(p, q)];
-    // Below this the rotation is the identity in either precision.
-    if off.magnitude() <= T::from_f64(1e-30) {
-        return;
+    // Lost in the rounding of the diagonal: so is what the rotation would change.
+    let scale = a[(p, p)].magnitude() + a[(q, q)].magnitude();
+    if scale + off.magnitude() == scale {
+        return false;
     }
     let theta = (a[(q, q)] - a[(p, p)]) / (off + off);
     let t =
@@ -241,4 +251,5 @@ fn rotate<T: Real>(a: &mut JointMatrix<T>, vectors: &mut JointMatrix<T>, p: usiz
         vectors[(k, p)] = x * c - y * s;
         vectors[(k, q)] = x * s + y * c;
     }
+    true
 }

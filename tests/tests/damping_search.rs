@@ -129,6 +129,23 @@ fn no_posture_is_worse_than_the_bound_says() {
     }
 }
 
+/// Rotors weigh on the diagonal of M only, a load on all of it.
+#[test]
+fn no_posture_is_worse_with_rotors_and_a_load() {
+    let mut geared = arms::FR3;
+    for (link, rotor) in geared
+        .links
+        .iter_mut()
+        .zip([0.5, 0.5, 0.3, 0.3, 0.1, 0.1, 0.05])
+    {
+        link.rotor_inertia = rotor;
+    }
+    let [openarm, loaded] = [arms::OPENARM_V20_LEFT, geared.with_tool(&LOAD)];
+    for arm in [openarm.with_tool(&LOAD), geared, loaded] {
+        assert!(excess(&arm, 1, 1_000, 10) <= EXCESS, "{}", arm.name);
+    }
+}
+
 #[test]
 #[ignore = "minutes"]
 fn no_posture_of_many_is_worse_than_the_bound_says() {
