@@ -316,20 +316,18 @@ fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
     );
 }
 
-#[inline(never)]
 fn spectrum<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.spectrum
         .update(&controller.levels, &data.rows, &data.dynamics.cholesky);
 }
 
-#[inline(never)]
 fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.whitened_motion.update(
         &mut data.motion,
         &controller.levels,
-        &data.dynamics,
+        &data.dynamics.cholesky,
         &data.spectrum,
-        &data.joints,
+        &data.joints.dq,
     );
 }
 

@@ -112,12 +112,23 @@ impl<T: Real> Compliance<T> {
 }
 
 impl<T: Real> Damping<T> {
-    /// D x \[Nm for x in rad/s\].
+    /// Takes D x \[Nm for x in rad/s\] off a force.
     #[inline]
-    pub(crate) fn times(&self, dynamics: &Dynamics<T>, x: &JointVector<T>) -> JointVector<T> {
-        match self {
-            Self::Joint(damping) => damping * x,
-            Self::Inertia(rate) => dynamics.mass_matrix * x * *rate,
+    pub(crate) fn take_from(
+        &self,
+        force: &mut JointVector<T>,
+        dynamics: &Dynamics<T>,
+        x: &JointVector<T>,
+    ) {
+        let (matrix, rate) = match self {
+            Self::Joint(damping) => (damping, T::ONE),
+            Self::Inertia(rate) => (&dynamics.mass_matrix, *rate),
+        };
+        for j in 0..DOF {
+            let speed = x[j] * rate;
+            for i in 0..DOF {
+                force[i] -= matrix[(i, j)] * speed;
+            }
         }
     }
 }

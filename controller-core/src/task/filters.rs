@@ -9,28 +9,29 @@ use crate::real::Real;
 /// 1/z down to a threshold, below it a line that ends at twice 1/threshold: what grew without
 /// bound meets an end, and does so without a kink.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Filter<T: Real> {
+struct Filter<T: Real> {
     /// \[1/kg\].
-    pub threshold: T,
-    /// \[kg\].
-    pub inverse: T,
+    threshold: T,
+    /// The line at z = 0 \[kg\].
+    end: T,
+    /// Its slope \[kg2\].
+    slope: T,
 }
 
 impl<T: Real> Filter<T> {
     fn new(threshold: f64) -> Self {
         Self {
             threshold: T::from_f64(threshold),
-            inverse: T::from_f64(1.0 / threshold),
+            end: T::from_f64(2.0 / threshold),
+            slope: T::from_f64(1.0 / (threshold * threshold)),
         }
     }
 
-    /// Of a mobility z \[1/kg\]: \[kg\].
+    /// Of a mobility z \[1/kg\], given 1/z: \[kg\].
     #[inline(always)]
-    pub fn of(&self, z: T) -> T {
-        let z = z.larger(T::ZERO);
-        let exact = T::ONE / z.larger(self.threshold);
-        let line = (T::ONE + T::ONE - z * self.inverse) * self.inverse;
-        if z >= self.threshold { exact } else { line }
+    fn of(&self, z: T, inverse: T) -> T {
+        let line = self.end - self.slope * z;
+        if z >= self.threshold { inverse } else { line }
     }
 }
 
@@ -38,8 +39,10 @@ impl<T: Real> Filter<T> {
 /// they are: of orientations in rad, with mobilities in 1/(kg m2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LevelFilters<T: Real> {
-    pub drive: Filter<T>,
-    pub keep: Filter<T>,
+    drive: Filter<T>,
+    keep: Filter<T>,
+    /// 1/zr \[kg\].
+    inverse_release: T,
     /// Largest command \[m/s2\], or \[rad/s2\], along a direction that is lost.
     lost_command: T,
     /// 1/(3 z0) \[kg\]: from there on a command has no limit.
@@ -74,12 +77,36 @@ impl<T: Real> LevelFilters<T> {
         Self {
             drive: Filter::new(z0),
             keep: Filter::new(mobility(limits.release_mobility)),
+            inverse_release: T::from_f64(1.0 / mobility(limits.release_mobility)),
             lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed / length),
             free: T::from_f64(1.0 / (3.0 * z0)),
             stiff_cubed: T::from_f64(stiff * stiff * stiff),
             approach: approach(task).map(T::from_f64),
             error_speed: T::from_f64(limits.error_speed / length),
         }
+    }
+
+    /// d and p \[kg\] of a direction of mobility z \[1/kg\].
+    #[inline(always)]
+    pub fn of(&self, z: T) -> [T; 2] {
+        let z = z.larger(T::ZERO);
+        // What is released is degraded, so that one inverse does for both.
+        let inverse = T::ONE / z.larger(self.keep.threshold);
+        [self.drive.of(z, inverse), self.keep.of(z, inverse)]
+    }
+
+    /// Whether a level is degraded and whether it is released, by the least mobility z \[1/kg\]
+    /// of its directions.
+    #[inline(always)]
+    pub fn lost(&self, z: T) -> [bool; 2] {
+        [z < self.drive.threshold, z < self.keep.threshold]
+    }
+
+    /// rho of a level, by the least mobility z \[1/kg\] of its directions.
+    #[inline(always)]
+    pub fn release(&self, z: T) -> T {
+        let below = (T::ONE - z * self.inverse_release).larger(T::ZERO);
+        below * below
     }
 
     /// Largest command \[m/s2\] along a direction of mobility z \[1/kg\].

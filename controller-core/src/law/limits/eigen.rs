@@ -14,32 +14,36 @@ pub struct Eigen<T: Real> {
     /// Entry k is the one off the diagonal that row and column k do not have.
     off: [T; 3],
     /// E by rows.
-    vectors: [[T; 3]; 3],
+    pub vectors: [[T; 3]; 3],
 }
 
 impl<T: Real> Eigen<T> {
-    /// Of a matrix by its diagonal, and by its entries off it, entry k at the place whose row
-    /// and column are the other two. Rows from `size` on are zero and stay out.
+    /// A matrix by its diagonal, and by its entries off it, entry k at the place whose row and
+    /// column are the other two.
     #[inline(always)]
-    pub fn new(&[diagonal, off]: &[[T; 3]; 2], size: usize) -> Self {
+    pub fn of(&[diagonal, off]: &[[T; 3]; 2]) -> Self {
         let (zero, one) = (T::ZERO, T::ONE);
-        let mut eigen = Self {
+        Self {
             values: diagonal,
             off,
             vectors: [[one, zero, zero], [zero, one, zero], [zero, zero, one]],
-        };
+        }
+    }
+
+    /// Makes it diagonal. Rows from `size` on are zero and stay out.
+    #[inline(always)]
+    pub fn solve(&mut self, size: usize) {
         match size {
             0 | 1 => {}
-            2 => eigen.rotate::<0, 1, 2>(),
+            2 => self.rotate::<0, 1, 2>(),
             _ => {
                 for _ in 0..SWEEPS {
-                    eigen.rotate::<0, 1, 2>();
-                    eigen.rotate::<0, 2, 1>();
-                    eigen.rotate::<1, 2, 0>();
+                    self.rotate::<0, 1, 2>();
+                    self.rotate::<0, 2, 1>();
+                    self.rotate::<1, 2, 0>();
                 }
             }
         }
-        eigen
     }
 
     /// The rotation in the plane (P, Q) that makes the entry between them zero; R is the third.
@@ -53,11 +57,9 @@ impl<T: Real> Eigen<T> {
         let between = off[R];
         let half = (values[Q] - values[P]) * T::HALF;
         // Keeps 0 / 0 away and changes nothing else.
-        let tiny = T::from_f64(1e-30).with_sign_of(half);
-        let root = (half * half + between * between)
-            .square_root()
-            .with_sign_of(half);
-        let tangent = between / (half + root + tiny);
+        let tiny = T::from_f64(1e-30);
+        let root = (half * half + between * between).square_root() + tiny;
+        let tangent = between / (half + root.with_sign_of(half));
         let cosine = T::ONE / (T::ONE + tangent * tangent).square_root();
         let sine = cosine * tangent;
         values[P] -= tangent * between;

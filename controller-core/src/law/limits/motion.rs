@@ -5,10 +5,10 @@
 //! F_i = E d E^T Ah_i (s - V),   V = sum over the levels j below of A_j^T F_j
 //! ```
 
-use super::spectrum::Spectrum;
-use crate::arm::dynamics::Dynamics;
-use crate::joint::{DOF, JointState, JointVector, zeros};
+use super::spectrum::{Spectrum, left_by};
+use crate::joint::{JointVector, zeros};
 use crate::law::motion::MotionSplit;
+use crate::linalg::Cholesky;
 use crate::ranges::MAX_ROWS;
 use crate::real::Real;
 use crate::task::level::Levels;
@@ -32,58 +32,52 @@ impl<T: Real> WhitenedMotion<T> {
         }
     }
 
-    /// Splits dq, here and in joint coordinates.
-    #[inline]
+    /// Splits dq, here and in joint coordinates. Behind a call: what it reads lies far apart.
+    #[inline(never)]
     pub(crate) fn update(
         &mut self,
         split: &mut MotionSplit<T>,
         levels: &Levels<T>,
-        dynamics: &Dynamics<T>,
+        cholesky: &Cholesky<T>,
         spectrum: &Spectrum<T>,
-        joints: &JointState<T>,
+        dq: &JointVector<T>,
     ) {
-        let cholesky = &dynamics.cholesky;
-        let whitened = cholesky.upper_times(&joints.dq);
-        self.null = whitened;
-        for (along, direction) in self.along.iter_mut().zip(spectrum.directions()) {
-            *along = direction.along.dot(&whitened);
-            let kept = direction.keep * *along;
-            for i in 0..DOF {
-                self.null[i] -= direction.along[i] * kept;
-            }
-        }
+        let whitened = cholesky.upper_times(dq);
+        self.null = left_by(spectrum.directions(), &whitened, &mut self.along);
         split.null_velocity = cholesky.solve_upper(&self.null);
-        split.task_velocity = joints.dq - split.null_velocity;
-        self.set_momenta(&mut split.task_momentum, levels, spectrum, whitened);
+        split.task_velocity = dq - split.null_velocity;
+        self.set_momenta(&mut split.task_momentum, levels, spectrum);
     }
 
-    /// F, from the last level to the first; `rest` is s - V.
+    /// F, from the last level to the first.
     #[inline(always)]
     fn set_momenta(
         &self,
         momentum: &mut [T; MAX_ROWS],
         levels: &Levels<T>,
         spectrum: &Spectrum<T>,
-        mut rest: JointVector<T>,
     ) {
+        // y^T (s - V) of the directions of the levels that are still to come.
+        let mut rest = self.along;
         for level in levels.as_slice().iter().rev() {
+            let (directions, rows) = (spectrum.of(level), level.rows());
             let mut of_level = [T::ZERO; 3];
-            for direction in spectrum.of(level) {
-                let speed = direction.along.dot(&rest);
-                direction.add_part(direction.drive * speed, &mut of_level);
+            for (direction, &rest) in directions.iter().zip(rest.get(rows.clone()).unwrap_or(&[])) {
+                direction.add_part(direction.drive * rest, &mut of_level);
             }
-            let Some(momentum) = momentum.get_mut(level.rows()) else {
-                return;
-            };
-            for ((momentum, direction), of_row) in
-                momentum.iter_mut().zip(spectrum.of(level)).zip(of_level)
+            let above = rest.get_mut(..level.start).unwrap_or(&mut []);
+            for (direction, &of_row) in directions.iter().zip(&of_level) {
+                for (rest, &along) in above.iter_mut().zip(&direction.of_above) {
+                    *rest -= along * of_row;
+                }
+            }
+            for (momentum, of_row) in momentum
+                .get_mut(rows)
+                .unwrap_or(&mut [])
+                .iter_mut()
+                .zip(of_level)
             {
                 *momentum = of_row;
-                if level.start > 0 {
-                    for i in 0..DOF {
-                        rest[i] -= direction.row[i] * of_row;
-                    }
-                }
             }
         }
     }

@@ -103,8 +103,10 @@ impl<T: Real> Projection<T> {
     fn project(&mut self, wished: &Wished<'_, T>) {
         let bounds = wished.bounds;
         let mut search = Search::new(self.compliance(wished), wished.acceleration, bounds);
+        let mut pushed = search.worst();
         self.pivots = 0;
-        while self.pivots < PIVOTS && search.exchange() {
+        while pushed != NONE && self.pivots < PIVOTS {
+            pushed = search.exchange(pushed % WIDTH);
             self.pivots += 1;
         }
         self.at_bound = [IndexSet::NONE; 2];
@@ -112,7 +114,9 @@ impl<T: Real> Projection<T> {
         for i in 0..DOF {
             let (a, low, high) = (search.acceleration(i), bounds.least[i], bounds.greatest[i]);
             within &= (a >= low) & (a <= high);
-            let cut = a.limited(low, high);
+            // What is not a number is cut as well; the torque of the wish still shows it.
+            let cut = a.larger(low);
+            let cut = if cut < high { cut } else { high };
             self.at_bound[0].insert_if(i, cut == low);
             self.at_bound[1].insert_if(i, cut == high);
             self.acceleration[i] = cut;
@@ -169,21 +173,19 @@ const NONE: usize = DOF;
 /// The dual active set on its way. Joints at a bound are those that are swept into the tableau.
 struct Search<T: Real> {
     tableau: Tableau<T>,
-    /// a \[rad/s2\] of free joints; of those at a bound it has no meaning.
-    value: [T; WIDTH],
-    /// Multiplier \[Nm\] of joints at a bound, infinite of free ones: no step undoes it.
-    multiplier: [T; WIDTH],
+    /// a \[rad/s2\] of free joints, the multiplier \[Nm\] of joints at a bound.
+    point: [T; WIDTH],
+    /// 1 of joints at a bound, 0 of free ones.
+    held: [T; WIDTH],
     least: [T; WIDTH],
     greatest: [T; WIDTH],
-    /// The bound that a joint is at.
+    /// The bound that a joint is at, or pushed to.
     bound: [T; WIDTH],
     /// 1 / T_jj before any sweep.
     weight: [T; WIDTH],
     /// The same of joints that may be chosen, 0 of others.
     choice: [T; WIDTH],
-    /// The joint that is being pushed, [`NONE`] before the next one is chosen.
-    pushed: usize,
-    /// Its multiplier so far.
+    /// The multiplier so far of the joint that is pushed.
     so_far: T,
 }
 
@@ -196,19 +198,18 @@ impl<T: Real> Search<T> {
     ) -> Self {
         let mut search = Self {
             tableau,
-            value: [T::ZERO; WIDTH],
-            multiplier: [T::INFINITE; WIDTH],
+            point: [T::ZERO; WIDTH],
+            held: [T::ZERO; WIDTH],
             least: [T::ZERO; WIDTH],
             greatest: [T::ZERO; WIDTH],
             bound: [T::ZERO; WIDTH],
             weight: [T::ZERO; WIDTH],
             choice: [T::ZERO; WIDTH],
-            pushed: NONE,
             so_far: T::ZERO,
         };
         for i in 0..DOF {
             let weight = T::ONE / search.tableau.diagonal(i);
-            search.value[i] = acceleration[i];
+            search.point[i] = acceleration[i];
             search.least[i] = bounds.least[i];
             search.greatest[i] = bounds.greatest[i];
             search.weight[i] = weight;
@@ -220,84 +221,69 @@ impl<T: Real> Search<T> {
     /// a of a joint.
     #[inline(always)]
     fn acceleration(&self, joint: usize) -> T {
-        if self.multiplier[joint].finite() {
+        let held = self.held[joint] > T::ZERO;
+        if held {
             self.bound[joint]
         } else {
-            self.value[joint]
+            self.point[joint]
         }
     }
 
-    /// One exchange: a joint onto its bound, or on the way there another one off its own.
-    /// False where no bound is violated any more.
+    /// One exchange: a joint onto its bound, or on the way there another one off its own. Returns
+    /// the joint to push next, [`NONE`] where no bound is violated any more.
     #[inline(always)]
-    fn exchange(&mut self) -> bool {
-        let worst = self.worst();
-        if self.pushed == NONE {
-            if worst == NONE {
-                return false;
-            }
-            let joint = worst % WIDTH;
-            self.pushed = joint;
-            self.so_far = T::ZERO;
-            self.bound[joint] = self.value[joint].limited(self.least[joint], self.greatest[joint]);
-        }
-        let joint = self.pushed % WIDTH;
-        let row = self.tableau.row(joint);
-        let pivot = row[joint];
-        if pivot * self.weight[joint] <= T::PIVOT_SHARE {
-            // Nothing gives way to it any more: the cut in the end keeps its bound.
-            self.choice[joint] = T::ZERO;
-            self.pushed = NONE;
-            return true;
-        }
-        let violation = self.value[joint] - self.bound[joint];
-        let (step, dropped) = self.advance(violation / pivot, &row);
+    fn exchange(&mut self, pushed: usize) -> usize {
+        let row = self.tableau.row(pushed);
+        let pivot = row[pushed];
+        let violation = self.point[pushed] - self.bound[pushed];
+        let (step, dropped) = self.reach(violation / pivot, &row);
         self.so_far += step;
-        if dropped == NONE {
-            self.multiplier[joint] = self.so_far;
-            self.choice[joint] = T::ZERO;
-            self.pushed = NONE;
-            self.tableau.sweep(joint, &row, T::ONE);
+        for i in 0..DOF {
+            self.point[i] -= row[i] * step;
+        }
+        if pivot * self.weight[pushed] <= T::PIVOT_SHARE {
+            // Nothing gives way to it any more: the cut in the end keeps its bound.
+            self.choice[pushed] = T::ZERO;
+            self.worst()
+        } else if dropped == NONE {
+            self.point[pushed] = self.so_far;
+            self.held[pushed] = T::ONE;
+            self.choice[pushed] = T::ZERO;
+            self.tableau.sweep(pushed, &row, T::ONE);
+            self.worst()
         } else {
             let dropped = dropped % WIDTH;
-            self.value[dropped] = self.bound[dropped];
-            self.multiplier[dropped] = T::INFINITE;
+            self.point[dropped] = self.bound[dropped];
+            self.held[dropped] = T::ZERO;
             self.choice[dropped] = self.weight[dropped];
             let row = self.tableau.row(dropped);
             self.tableau.sweep(dropped, &row, -T::ONE);
+            pushed
         }
-        true
     }
 
-    /// Moves the multiplier of the pushed joint by `step`, or until the first joint leaves its
-    /// bound; returns how far, and that joint.
+    /// How far the multiplier of the pushed joint goes of `step`: all the way, or until the first
+    /// joint leaves its bound; and that joint, or [`NONE`].
     #[inline(always)]
-    fn advance(&mut self, step: T, row: &[T; WIDTH]) -> (T, usize) {
-        let mut change = [T::ZERO; WIDTH];
+    fn reach(&self, step: T, row: &[T; WIDTH]) -> (T, usize) {
         // Above 1 a multiplier changes its sign on the way.
         let (mut most, mut dropped) = (T::ONE, NONE);
         for i in 0..DOF {
-            change[i] = row[i] * step;
-            let way = change[i] / self.multiplier[i];
+            let way = row[i] * step * self.held[i] / self.point[i];
             if way > most {
                 (most, dropped) = (way, i);
             }
         }
-        let share = T::ONE / most;
-        for i in 0..DOF {
-            let change = change[i] * share;
-            self.multiplier[i] -= change;
-            self.value[i] -= change;
-        }
-        (step * share, dropped)
+        (step / most, dropped)
     }
 
-    /// The joint whose bound is violated worst, by the cost of pushing it there.
-    #[inline(always)]
-    fn worst(&self) -> usize {
+    /// The joint whose bound is violated worst, by the cost of pushing it there, or [`NONE`]: it
+    /// is ready to be pushed. Behind a call: it is in the flash once.
+    #[inline(never)]
+    fn worst(&mut self) -> usize {
         let (mut worst, mut most) = (NONE, T::ZERO);
         for i in 0..DOF {
-            let value = self.value[i];
+            let value = self.point[i];
             let above = (value - self.greatest[i]).larger(self.least[i] - value);
             let violation = above.larger(T::ZERO);
             let cost = violation * violation * self.choice[i];
@@ -305,6 +291,9 @@ impl<T: Real> Search<T> {
                 (most, worst) = (cost, i);
             }
         }
+        let joint = worst % WIDTH;
+        self.so_far = T::ZERO;
+        self.bound[joint] = self.point[joint].limited(self.least[joint], self.greatest[joint]);
         worst
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! A_i  = J_i L^-T                                             whitened rows, M = L L^T
-//! Ah_i = A_i - sum over rows k above of p_k (A_i y_k) y_k^T   what the levels above leave
+//! Ah_i = A_i - sum over directions k above of p_k (A_i y_k) y_k^T   what the levels above leave
 //! S_i  = Ah_i A_i^T = E diag(z) E^T,   y = rows of E^T Ah_i
 //! ```
 //!
@@ -27,24 +27,27 @@ pub struct Direction<T: Real> {
     pub row: JointVector<T>,
     /// y: the direction, of what the levels above leave.
     pub along: JointVector<T>,
-    /// Its column of E: the direction in the rows of the level.
-    pub column: [T; 3],
-    /// z \[1/kg\], of an orientation \[1/(kg m2)\].
-    pub mobility: T,
-    /// d: 1/z, or less where the level is degraded.
-    pub drive: T,
     /// p: 1/z, or less where the level is released.
     pub keep: T,
+    /// d: 1/z, or less where the level is degraded.
+    pub drive: T,
+    /// z \[1/kg\], of an orientation \[1/(kg m2)\].
+    pub mobility: T,
+    /// Its column of E: the direction in the rows of the level.
+    pub column: [T; 3],
+    /// The row of A along the directions of the levels above.
+    pub of_above: [T; MAX_ROWS],
 }
 
 impl<T: Real> Direction<T> {
     const NONE: Self = Self {
         row: zeros(),
         along: zeros(),
-        column: [T::ZERO; 3],
-        mobility: T::ZERO,
-        drive: T::ZERO,
         keep: T::ZERO,
+        drive: T::ZERO,
+        mobility: T::ZERO,
+        column: [T::ZERO; 3],
+        of_above: [T::ZERO; MAX_ROWS],
     };
 
     /// The part of numbers per row of the level along the direction.
@@ -90,8 +93,8 @@ impl<T: Real> Spectrum<T> {
         }
     }
 
-    /// Level by level.
-    #[inline]
+    /// Level by level. Behind a call: what it reads lies far apart.
+    #[inline(never)]
     pub(crate) fn update(
         &mut self,
         levels: &Levels<T>,
@@ -103,7 +106,8 @@ impl<T: Real> Spectrum<T> {
         (self.degraded, self.released) = (IndexSet::NONE, IndexSet::NONE);
         let placed = self.directions.iter_mut().zip(&rows.jacobian);
         for (direction, row) in placed.take(self.count) {
-            direction.row = cholesky.solve_lower(row);
+            let row = cholesky.solve_lower(row);
+            (direction.row, direction.along) = (row, row);
         }
         for (number, level) in levels.as_slice().iter().enumerate() {
             self.split(number, level);
@@ -119,31 +123,27 @@ impl<T: Real> Spectrum<T> {
         let Some(own) = from.get_mut(..level.size) else {
             return;
         };
-        let mut left: [JointVector<T>; 3] = [zeros(); 3];
-        for (left, direction) in left.iter_mut().zip(&*own) {
-            *left = left_by(above, &direction.row);
-        }
-        let eigen = Eigen::new(&gram(&left, own, number == 0), level.size);
-        let filters = &level.filters;
-        for (k, direction) in own.iter_mut().enumerate().take(3) {
-            let column = eigen.column(k);
-            let mut along = left[0] * column[0];
-            for (left, &share) in left.iter().zip(&column).take(level.size).skip(1) {
-                for i in 0..DOF {
-                    along[i] += left[i] * share;
-                }
+        if number > 0 {
+            for direction in &mut *own {
+                direction.along = left_by(above, &direction.row, &mut direction.of_above);
             }
-            direction.along = along;
-            let z = eigen.values[k];
-            direction.column = column;
-            direction.mobility = z;
-            direction.drive = filters.drive.of(z);
-            direction.keep = filters.keep.of(z);
-            self.degraded.insert_if(number, z < filters.drive.threshold);
-            self.released.insert_if(number, z < filters.keep.threshold);
-            let below = (T::ONE - z * filters.keep.inverse).larger(T::ZERO);
-            self.release = self.release.larger(below * below);
         }
+        let mut eigen = Eigen::of(&gram(own));
+        eigen.solve(level.size);
+        turn(own, &eigen);
+        let filters = &level.filters;
+        let mut least = T::INFINITE;
+        for (k, direction) in own.iter_mut().enumerate().take(3) {
+            let z = eigen.values[k];
+            direction.mobility = z;
+            direction.column = eigen.column(k);
+            [direction.drive, direction.keep] = filters.of(z);
+            least = if z < least { z } else { least };
+        }
+        let [degraded, released] = filters.lost(least);
+        self.degraded.insert_if(number, degraded);
+        self.released.insert_if(number, released);
+        self.release = self.release.larger(filters.release(least));
     }
 
     /// All directions, level by level.
@@ -164,21 +164,23 @@ impl<T: Real> Spectrum<T> {
     pub(super) fn of(&self, level: &Level<T>) -> &[Direction<T>] {
         self.directions.get(level.rows()).unwrap_or(&[])
     }
-
-    /// x less what all directions keep of it: the null-space part of a whitened vector.
-    #[must_use]
-    #[inline]
-    pub fn null_part(&self, x: &JointVector<T>) -> JointVector<T> {
-        left_by(self.directions(), x)
-    }
 }
 
-/// x less what directions keep of it: 1 - sum of p y y^T, applied.
-#[inline(always)]
-pub(super) fn left_by<T: Real>(directions: &[Direction<T>], x: &JointVector<T>) -> JointVector<T> {
+/// x less what directions keep of it: 1 - sum of p y y^T, applied; `along` becomes y^T x of each.
+/// Behind a call: it is in the flash once.
+#[inline(never)]
+pub(super) fn left_by<T: Real>(
+    directions: &[Direction<T>],
+    x: &JointVector<T>,
+    along: &mut [T; MAX_ROWS],
+) -> JointVector<T> {
+    let used = along.get_mut(..directions.len()).unwrap_or(&mut []);
     let mut left = *x;
-    for direction in directions {
-        let kept = direction.keep * direction.along.dot(x);
+    for (direction, along) in directions.iter().zip(&mut *used) {
+        *along = direction.along.dot(&left);
+    }
+    for (direction, along) in directions.iter().zip(used) {
+        let kept = direction.keep * *along;
         for i in 0..DOF {
             left[i] -= direction.along[i] * kept;
         }
@@ -186,33 +188,48 @@ pub(super) fn left_by<T: Real>(directions: &[Direction<T>], x: &JointVector<T>) 
     left
 }
 
-/// S by its diagonal, and by its entries off it, each at the place of the row that it has not to
-/// do with. Symmetric but for rounding, and where a level above is released.
+/// S of a level whose directions are still what its rows leave: its diagonal, and its entries
+/// off it, each at the place of the row that it has not to do with.
 #[inline(always)]
-fn gram<T: Real>(left: &[JointVector<T>; 3], own: &[Direction<T>], first: bool) -> [[T; 3]; 2] {
-    let product = |a: usize, b: usize| match own.get(b) {
-        Some(direction) => left[a].dot(&direction.row),
-        None => T::ZERO,
-    };
-    let mean = |a: usize, b: usize| {
-        if first {
-            product(a, b)
-        } else {
-            (product(a, b) + product(b, a)) * T::HALF
+fn gram<T: Real>(own: &[Direction<T>]) -> [[T; 3]; 2] {
+    let product = |a: &Direction<T>, b: &Direction<T>| a.along.dot(&b.row);
+    let zero = T::ZERO;
+    match own {
+        [a] => [[product(a, a), zero, zero], [zero; 3]],
+        [a, b] => [
+            [product(a, a), product(b, b), zero],
+            [zero, zero, product(b, a)],
+        ],
+        [a, b, c] => [
+            [product(a, a), product(b, b), product(c, c)],
+            [product(c, b), product(c, a), product(b, a)],
+        ],
+        _ => [[zero; 3]; 2],
+    }
+}
+
+/// E^T: from what the rows leave to the directions.
+#[inline(always)]
+fn turn<T: Real>(own: &mut [Direction<T>], eigen: &Eigen<T>) {
+    let [p, q, r] = eigen.vectors;
+    match own {
+        [a, b] => {
+            for i in 0..DOF {
+                let (x, y) = (a.along[i], b.along[i]);
+                a.along[i] = p[0] * x + q[0] * y;
+                b.along[i] = p[1] * x + q[1] * y;
+            }
         }
-    };
-    let (mut diagonal, mut off) = ([T::ZERO; 3], [T::ZERO; 3]);
-    for k in 0..3 {
-        diagonal[k] = product(k, k);
+        [a, b, c] => {
+            for i in 0..DOF {
+                let (x, y, z) = (a.along[i], b.along[i], c.along[i]);
+                a.along[i] = p[0] * x + q[0] * y + r[0] * z;
+                b.along[i] = p[1] * x + q[1] * y + r[1] * z;
+                c.along[i] = p[2] * x + q[2] * y + r[2] * z;
+            }
+        }
+        _ => {}
     }
-    if own.len() > 1 {
-        off[2] = mean(0, 1);
-    }
-    if own.len() > 2 {
-        off[1] = mean(0, 2);
-        off[0] = mean(1, 2);
-    }
-    [diagonal, off]
 }
 
 impl<T: Real> Default for Spectrum<T> {

@@ -63,8 +63,8 @@ impl<T: Real> Tableau<T> {
         self.entries[(i * (i + 3) / 2) % ENTRIES]
     }
 
-    /// Row `k`.
-    #[inline(always)]
+    /// Row `k`. Behind a call: it is in the flash once.
+    #[inline(never)]
     pub fn row(&self, k: usize) -> [T; WIDTH] {
         let places = &PLACE[k % WIDTH];
         let mut row = [T::ZERO; WIDTH];
@@ -75,8 +75,9 @@ impl<T: Real> Tableau<T> {
     }
 
     /// Sweeps variable `k`, whose row this is, in (`sign` 1) or out (-1): what is left is the
-    /// matrix of the others with it held, its own row what its multiplier does to them.
-    #[inline(always)]
+    /// matrix of the others with it held, its own row what its multiplier does to them. Behind a
+    /// call: it is in the flash once.
+    #[inline(never)]
     pub fn sweep(&mut self, k: usize, row: &[T; WIDTH], sign: T) {
         let inverse = T::ONE / row[k % WIDTH];
         for i in 0..DOF {

@@ -18,7 +18,6 @@ use super::spectrum::{Spectrum, left_by};
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
-use crate::linalg::Cholesky;
 use crate::ranges::{MAX_LEVELS, MAX_ROWS, RELEASE_DAMPING};
 use crate::real::Real;
 use crate::task::level::{Level, Levels};
@@ -40,10 +39,13 @@ pub struct Wish<T: Real> {
     /// Levels whose command was shortened: by the speed of their error, or along a direction
     /// that gets lost.
     pub shaped: IndexSet,
-    /// Acceleration \[m/s2\] of each level by what stands below it; 0 but for rounding where
-    /// nothing above is released. Of orientations times
+    /// Acceleration \[m/s2\] of each level by what stands below it; 0 in cycles in which no level
+    /// is released: then it is rounding. Of orientations times
     /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH).
     pub leak: [T; MAX_LEVELS],
+    /// What the rows of each level get by the stages down to its own, in cycles in which a level
+    /// is released.
+    of_rows: [T; MAX_ROWS],
 }
 
 /// What the wish is made from.
@@ -67,55 +69,133 @@ struct Sum<T: Real> {
     whitened: JointVector<T>,
     /// L^-T u \[rad/s2\].
     acceleration: JointVector<T>,
+    /// C dq + g - r + L u \[Nm\].
+    torque: JointVector<T>,
     /// ur: L^-1 r, less what the levels so far have compensated.
     residual: JointVector<T>,
-    /// C dq + g - r \[Nm\].
-    bias: JointVector<T>,
+    /// Parts along the directions of what was split last.
+    parts: [T; MAX_ROWS],
 }
 
 impl<T: Real> Sum<T> {
-    /// u + ur.
-    #[inline(always)]
-    fn known(&self) -> JointVector<T> {
-        self.whitened + self.residual
-    }
-
-    /// Adds a share of a stage.
-    #[inline(always)]
-    fn add(&mut self, stage: &Stage<T>, share: T) {
-        for i in 0..DOF {
-            self.whitened[i] += stage.whitened[i] * share;
-            self.acceleration[i] += stage.acceleration[i] * share;
-        }
-    }
-}
-
-/// What one stage asks for.
-struct Stage<T: Real> {
-    whitened: JointVector<T>,
-    /// L^-T of it \[rad/s2\].
-    acceleration: JointVector<T>,
-}
-
-impl<T: Real> Stage<T> {
-    #[inline(always)]
-    fn new(cholesky: &Cholesky<T>, whitened: JointVector<T>) -> Self {
-        Self {
-            acceleration: cholesky.solve_upper(&whitened),
-            whitened,
-        }
-    }
-
-    /// Share, at most 1, with which no joint is asked for more than alpha.
-    #[inline(always)]
-    fn moderate_share(&self, bounds: &JointBounds<T>) -> T {
+    /// Adds a stage; returns the share of it that is added: no joint is asked for more than
+    /// alpha, and none for more torque than there is on top of `before` \[Nm\], if that counts.
+    /// Behind a call: it is in the flash once.
+    #[inline(never)]
+    fn add(
+        &mut self,
+        ask: &Ask<'_, T>,
+        stage: &JointVector<T>,
+        before: Option<&JointVector<T>>,
+    ) -> T {
+        let cholesky = &ask.dynamics.cholesky;
+        let acceleration = cholesky.solve_upper(stage);
         let mut most = T::ONE;
         for i in 0..DOF {
-            let of_joint = (self.acceleration[i] * bounds.inverse_acceleration[i]).magnitude();
+            let of_joint = (acceleration[i] * ask.bounds.inverse_acceleration[i]).magnitude();
             most = if of_joint > most { of_joint } else { most };
         }
-        T::ONE / most
+        let mut share = T::ONE / most;
+        let torque = cholesky.lower_times(stage);
+        if let Some(before) = before {
+            share = torque_share(share, before, &torque, ask.torque_limit);
+        }
+        for i in 0..DOF {
+            self.whitened[i] += stage[i] * share;
+            self.acceleration[i] += acceleration[i] * share;
+            self.torque[i] += torque[i] * share;
+        }
+        share
     }
+
+    /// u_i, and whether it was shortened; takes off the residual what the level compensates.
+    #[inline(always)]
+    fn command(
+        &mut self,
+        ask: &Ask<'_, T>,
+        number: usize,
+        level: &Level<T>,
+    ) -> (JointVector<T>, bool) {
+        let (rows, directions) = (ask.rows, ask.spectrum.of(level));
+        let along = ask.motion.along.get(level.rows()).unwrap_or(&[]);
+        let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
+        let bias = rows.bias.get(level.rows()).unwrap_or(&[]);
+        let (mut wanted, mut speed) = ([T::ZERO; 3], [T::ZERO; 3]);
+        let known = self.whitened + self.residual;
+        for (k, direction) in directions.iter().enumerate().take(3) {
+            if let (Some(along), Some(commanded), Some(bias)) =
+                (along.get(k), commanded.get(k), bias.get(k))
+            {
+                wanted[k] = *commanded - *bias;
+                if number > 0 {
+                    wanted[k] -= direction.row.dot(&known);
+                }
+                direction.add_part(*along, &mut speed);
+            }
+        }
+        let damped = level.damping_of_rows(&speed);
+        let mut shaped = rows.shortened.contains(number);
+        let mut forces = [[T::ZERO; 2]; 3];
+        for (direction, force) in directions.iter().zip(&mut forces) {
+            let residual = direction.along.dot(&self.residual);
+            let kept = direction.keep * residual;
+            let own = direction.part(&damped);
+            // The residual has acted on the rows above, all of it, but what the level
+            // compensates does not. Nothing but the residual has acted on those of the first.
+            let mut asked = direction.part(&wanted) + direction.mobility * kept + own;
+            if number == 0 {
+                asked -= residual;
+            }
+            let most = level.filters.most_command(direction.mobility);
+            let cut = asked.limited(-most, most);
+            shaped |= cut != asked;
+            *force = [direction.drive * cut - direction.keep * own, kept];
+        }
+        let mut command: JointVector<T> = zeros();
+        for (direction, [force, _]) in directions.iter().zip(&forces) {
+            for i in 0..DOF {
+                command[i] += direction.along[i] * *force;
+            }
+        }
+        let mut residual = self.residual;
+        for (direction, [_, kept]) in directions.iter().zip(&forces) {
+            for i in 0..DOF {
+                residual[i] -= direction.along[i] * *kept;
+            }
+        }
+        self.residual = residual;
+        (command, shaped)
+    }
+
+    /// u_n.
+    #[inline(always)]
+    fn null_command(&mut self, ask: &Ask<'_, T>) -> JointVector<T> {
+        let mut force = ask.dynamics.cholesky.solve_lower(ask.null_force);
+        let damping = T::from_f64(RELEASE_DAMPING) * ask.spectrum.release;
+        for i in 0..DOF {
+            force[i] -= ask.motion.null[i] * damping;
+        }
+        left_by(ask.spectrum.directions(), &force, &mut self.parts) + self.residual
+    }
+}
+
+/// `share`, or what of `torque` \[Nm\] there is room for on top of `before` within `limit`.
+#[inline(always)]
+fn torque_share<T: Real>(
+    mut share: T,
+    before: &JointVector<T>,
+    torque: &JointVector<T>,
+    limit: &JointVector<T>,
+) -> T {
+    let least = T::from_f64(1e-9);
+    for i in 0..DOF {
+        let (asked, before) = (torque[i], before[i]);
+        let towards = if asked < T::ZERO { -before } else { before };
+        let room = (limit[i] - towards).larger(T::ZERO);
+        let of_joint = room / asked.magnitude().larger(least);
+        share = if of_joint < share { of_joint } else { share };
+    }
+    share
 }
 
 impl<T: Real> Wish<T> {
@@ -130,150 +210,85 @@ impl<T: Real> Wish<T> {
             scaled: IndexSet::NONE,
             shaped: IndexSet::NONE,
             leak: [T::ZERO; MAX_LEVELS],
+            of_rows: [T::ZERO; MAX_ROWS],
         }
     }
 
-    /// Level by level, then the null space.
-    #[inline]
+    /// Level by level, then the null space. Behind a call: what it reads lies far apart.
+    #[inline(never)]
     pub(crate) fn update(&mut self, ask: &Ask<'_, T>) {
         let (dynamics, spectrum) = (ask.dynamics, ask.spectrum);
         let cholesky = &dynamics.cholesky;
         let mut sum = Sum {
             whitened: zeros(),
             acceleration: zeros(),
+            torque: dynamics.coriolis + dynamics.gravity - ask.residual,
             residual: cholesky.solve_lower(ask.residual),
-            bias: dynamics.coriolis + dynamics.gravity - ask.residual,
+            parts: [T::ZERO; MAX_ROWS],
         };
         (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
-        // What the rows of each level get by the stages down to their own.
-        let mut own = [T::ZERO; MAX_ROWS];
+        let released = spectrum.released.any();
         let levels = ask.levels.as_slice().iter();
-        for (number, (level, of_level)) in levels.zip(&mut self.level_share).enumerate() {
-            let (command, shaped) = command(ask, number, level, &mut sum);
-            let stage = Stage::new(cholesky, command);
-            let mut share = stage.moderate_share(ask.bounds);
-            if number > 0 {
-                let before = sum.bias + cholesky.lower_times(&sum.known());
-                let torque = cholesky.lower_times(&stage.whitened);
-                share *= torque_share(&before, &torque, share, ask.torque_limit);
+        let told = self.level_share.iter_mut().zip(&mut self.leak);
+        for (number, (level, (of_level, leak))) in levels.zip(told).enumerate() {
+            let (mut command, shaped) = sum.command(ask, number, level);
+            if released {
+                // Once more: of a direction that a level above has released, the share that it
+                // has been given back twice.
+                command = left_by(spectrum.above(level), &command, &mut sum.parts);
             }
-            sum.add(&stage, share);
-            *of_level = share;
+            let share = if number > 0 {
+                let before = sum.torque + cholesky.lower_times(&sum.residual);
+                sum.add(ask, &command, Some(&before))
+            } else {
+                sum.add(ask, &command, None)
+            };
+            (*of_level, *leak) = (share, T::ZERO);
             self.shaped.insert_if(number, shaped);
             self.scaled.insert_if(number, share < T::ONE);
-            let known = sum.known();
-            if let Some(own) = own.get_mut(level.rows()) {
-                for (own, direction) in own.iter_mut().zip(spectrum.of(level)) {
-                    *own = direction.row.dot(&known);
-                }
+            if released {
+                let known = sum.whitened + sum.residual;
+                set_rows(&mut self.of_rows, level, spectrum, &known);
             }
         }
-        self.add_null_space(ask, &mut sum);
-        self.acceleration = sum.acceleration;
-        self.set_leaks(ask, &own, &sum.whitened);
-    }
-
-    /// The null space; makes the torque of all stages.
-    #[inline(always)]
-    fn add_null_space(&mut self, ask: &Ask<'_, T>, sum: &mut Sum<T>) {
-        let cholesky = &ask.dynamics.cholesky;
-        let mut force = cholesky.solve_lower(ask.null_force);
-        let damping = T::from_f64(RELEASE_DAMPING) * ask.spectrum.release;
-        for i in 0..DOF {
-            force[i] -= ask.motion.null[i] * damping;
+        let command = sum.null_command(ask);
+        let before = sum.torque;
+        self.null_share = sum.add(ask, &command, Some(&before));
+        self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
+        (self.acceleration, self.torque) = (sum.acceleration, sum.torque);
+        if released {
+            self.set_leaks(ask, &sum.whitened);
         }
-        let command = ask.spectrum.null_part(&force) + sum.residual;
-        let stage = Stage::new(cholesky, command);
-        let moderate = stage.moderate_share(ask.bounds);
-        let before = sum.bias + cholesky.lower_times(&sum.whitened);
-        let torque = cholesky.lower_times(&stage.whitened);
-        let share = moderate * torque_share(&before, &torque, moderate, ask.torque_limit);
-        sum.add(&stage, share);
-        self.torque = before + torque * share;
-        self.null_share = share;
-        self.scaled.insert_if(MAX_LEVELS, share < T::ONE);
     }
 
-    /// What the levels got beyond `own`.
-    #[inline(always)]
-    fn set_leaks(&mut self, ask: &Ask<'_, T>, own: &[T; MAX_ROWS], whitened: &JointVector<T>) {
-        let levels = ask.levels.as_slice().iter();
-        for (level, leak) in levels.zip(&mut self.leak) {
+    /// What the levels get by all stages beyond what they get by those down to their own.
+    #[inline(never)]
+    fn set_leaks(&mut self, ask: &Ask<'_, T>, whitened: &JointVector<T>) {
+        let mut all = [T::ZERO; MAX_ROWS];
+        for (level, leak) in ask.levels.as_slice().iter().zip(&mut self.leak) {
+            set_rows(&mut all, level, ask.spectrum, whitened);
             let mut squared = T::ZERO;
-            let own = own.get(level.rows()).unwrap_or(&[]);
-            for (direction, own) in ask.spectrum.of(level).iter().zip(own) {
-                let below = direction.row.dot(whitened) - *own;
-                squared += below * below;
+            let rows = all.iter().zip(&self.of_rows).take(level.start + level.size);
+            for (all, own) in rows.skip(level.start) {
+                squared += (*all - *own) * (*all - *own);
             }
             *leak = squared.square_root() * level.length;
         }
     }
 }
 
-/// u_i, and whether it was shortened; takes off the residual what the level compensates.
-#[inline(always)]
-fn command<T: Real>(
-    ask: &Ask<'_, T>,
-    number: usize,
+/// What the rows of a level get by x: A x.
+#[inline(never)]
+fn set_rows<T: Real>(
+    of_rows: &mut [T; MAX_ROWS],
     level: &Level<T>,
-    sum: &mut Sum<T>,
-) -> (JointVector<T>, bool) {
-    let (rows, spectrum) = (ask.rows, ask.spectrum);
-    let directions = spectrum.of(level);
-    sum.residual = left_by(directions, &sum.residual);
-    let known = sum.known();
-    let along = ask.motion.along.get(level.rows()).unwrap_or(&[]);
-    let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
-    let bias = rows.bias.get(level.rows()).unwrap_or(&[]);
-    let (mut wanted, mut speed) = ([T::ZERO; 3], [T::ZERO; 3]);
-    for (k, direction) in directions.iter().enumerate().take(3) {
-        if let (Some(along), Some(commanded), Some(bias)) =
-            (along.get(k), commanded.get(k), bias.get(k))
-        {
-            wanted[k] = *commanded - *bias - direction.row.dot(&known);
-            direction.add_part(*along, &mut speed);
-        }
+    spectrum: &Spectrum<T>,
+    x: &JointVector<T>,
+) {
+    let of_rows = of_rows.get_mut(level.rows()).unwrap_or(&mut []);
+    for (of_row, direction) in of_rows.iter_mut().zip(spectrum.of(level)) {
+        *of_row = direction.row.dot(x);
     }
-    let damped = level.damping_of_rows(&speed);
-    let mut shaped = rows.shortened.contains(number);
-    let mut command: JointVector<T> = zeros();
-    for direction in directions {
-        let own = direction.part(&damped);
-        let asked = direction.part(&wanted) + own;
-        let most = level.filters.most_command(direction.mobility);
-        let cut = asked.limited(-most, most);
-        shaped |= cut != asked;
-        let force = direction.drive * cut - direction.keep * own;
-        for i in 0..DOF {
-            command[i] += direction.along[i] * force;
-        }
-    }
-    if number > 0 {
-        // Once more: of a direction that a level above has released, the share that it has
-        // been given back twice.
-        command = left_by(spectrum.above(level), &command);
-    }
-    (command, shaped)
-}
-
-/// Largest share, at most 1, of a torque of `share` times `torque` \[Nm\] that goes on top of
-/// `before` within `limit`.
-#[inline(always)]
-fn torque_share<T: Real>(
-    before: &JointVector<T>,
-    torque: &JointVector<T>,
-    share: T,
-    limit: &JointVector<T>,
-) -> T {
-    let least = T::from_f64(1e-9);
-    let mut room = T::ONE;
-    for i in 0..DOF {
-        let asked = torque[i] * share;
-        let towards = T::ONE.with_sign_of(asked) * before[i];
-        let of_joint = (limit[i] - towards).larger(T::ZERO) / asked.magnitude().larger(least);
-        room = if of_joint < room { of_joint } else { room };
-    }
-    room
 }
 
 impl<T: Real> Default for Wish<T> {
