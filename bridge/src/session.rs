@@ -253,7 +253,7 @@ impl Session {
             return Ok(());
         }
         self.config.controller.cycle_s = period;
-        let controller = Controller::new(&self.config.arm, &self.config.controller)?;
+        let controller = (self.config.law)(&self.config.arm, &self.config.controller)?;
         self.cycle_s = period;
         self.posture = incoming.q;
         self.controller = Some(controller);

@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use controller_core::joint::DOF;
 use controller_core::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, MASS_MIN, MAX_LEVELS, MAX_ROWS, QUATERNION_NORMS,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, JOINT_LIMIT_RANGE, LEVEL_SPEED_RANGE, MASS_MIN, MAX_LEVELS,
+    MAX_ROWS, MOBILITY_RANGE, QUATERNION_NORMS,
 };
 
 use crate::invalid::Invalid;
@@ -123,6 +124,24 @@ pub const INERTIA_KG_M2: Range<f64> = Range::new(-100.0, 100.0);
 /// Gains that act on tasks and joints, and of the observer; of K_p \[1/s2\], K_d \[1/s\],
 /// K_q \[Nm/rad\], D \[Nms/rad\], c and K_I \[1/s\].
 pub const GAIN: Range<f64> = Range::above(0.0, GAIN_MAX);
+
+/// A mobility at which something changes \[1/kg\].
+pub const MOBILITY: Range<f64> = Range::new(MOBILITY_RANGE[0], MOBILITY_RANGE[1]);
+
+/// A speed that a level is held to \[m/s\].
+pub const LEVEL_SPEED_M_S: Range<f64> = Range::new(LEVEL_SPEED_RANGE[0], LEVEL_SPEED_RANGE[1]);
+
+/// An acceleration that a joint is held to \[rad/s2\].
+pub const JOINT_ACCELERATION: Range<f64> = Range::new(JOINT_LIMIT_RANGE[0], JOINT_LIMIT_RANGE[1]);
+
+/// A gain with which a joint is kept within its bounds \[1/s\].
+pub const JOINT_GAIN: Range<f64> = Range::new(JOINT_LIMIT_RANGE[0], JOINT_LIMIT_RANGE[1]);
+
+/// Before the end of a range \[deg\].
+pub const MARGIN_DEG: Range<f64> = Range::new(0.0, 11.0);
+
+/// Share of a speed limit.
+pub const SPEED_SHARE: Range<f64> = Range::new(0.1, 1.0);
 
 /// K of (14) \[1/s\].
 pub const RATE_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);

@@ -7,6 +7,7 @@ mod contact;
 mod hand;
 mod level;
 mod metric;
+mod near;
 mod point;
 mod push;
 mod reference;
@@ -32,6 +33,7 @@ pub use contact::Interval;
 pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec, TaskSpec};
 pub use metric::{Metric, Unit};
+pub use near::{JointLimitsSpec, LawSpec, LevelLimitsSpec};
 pub use point::PointSpec;
 pub use push::Push;
 pub use reference::{AxisOf, ReferenceSpec};
@@ -59,6 +61,12 @@ pub struct Scenario {
     /// What it carries at its flange.
     #[serde(default)]
     pub tool: Option<ToolSpec>,
+    /// Which law the controller has.
+    #[serde(default)]
+    pub law: LawSpec,
+    /// What the law may do with the joints.
+    #[serde(default)]
+    pub joint_limits: Option<JointLimitsSpec>,
     /// Length \[s\].
     pub duration_s: f64,
     /// Control cycle \[ms\].
@@ -213,6 +221,11 @@ impl Scenario {
         }
         let arm = EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())?;
         let arm = &arm;
+        if let Some(limits) = &self.joint_limits {
+            limits
+                .validate()
+                .map_err(|error| error.in_table("joint_limits"))?;
+        }
         DURATION_S.check("duration_s", self.duration_s)?;
         CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
         for (&angle, link) in self.start_deg.iter().zip(&arm.parameters.links) {
@@ -268,8 +281,12 @@ impl Scenario {
     /// there is.
     #[must_use]
     pub fn arm(&self) -> EquippedArm {
-        EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
-            .unwrap_or_else(|_| EquippedArm::of(arms::ALL[0]))
+        let mut arm = EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
+            .unwrap_or_else(|_| EquippedArm::of(arms::ALL[0]));
+        if let Some(spec) = &self.joint_limits {
+            arm.parameters.limits = spec.of_arm(&arm.parameters, self.cycle_s());
+        }
+        arm
     }
 
     /// Start posture \[rad\].
@@ -298,7 +315,12 @@ impl Scenario {
     /// Tasks that the core refuses.
     pub fn controller_config(&self, dead_cycles: u8) -> Result<ControllerConfig, Invalid> {
         let arm = self.arm();
-        let tasks: Vec<_> = self.levels.iter().map(|level| level.task(&arm)).collect();
+        let tasks: Vec<_> = self
+            .levels
+            .iter()
+            .enumerate()
+            .map(|(place, level)| level.task(place, &arm))
+            .collect();
         Ok(ControllerConfig {
             tasks: TaskSet::new(&tasks).map_err(|error| Invalid::line(error).within(&self.name))?,
             null_space: NullSpace {

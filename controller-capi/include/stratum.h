@@ -90,6 +90,10 @@ enum {
   STRATUM_CONFIG_DAMPING = 142,
   // Settings: the frame of a level has axes that are not orthogonal and of length 1.
   STRATUM_CONFIG_FRAME_ROTATION = 143,
+  // Settings: a limit of a level is outside its range.
+  STRATUM_CONFIG_LEVEL_LIMITS = 144,
+  // Settings: an integrated posture needs the exact law.
+  STRATUM_CONFIG_POSTURE = 145,
   // Arm or tool: a parameter is not finite.
   STRATUM_CONFIG_ARM_NON_FINITE = 160,
   // Arm: a parameter that must be above 0 is not.
@@ -112,6 +116,18 @@ enum {
   STRATUM_LIMIT_TORQUE_RATE = 98,
   // Limit: a level, or the posture, on its way to a reference that jumped.
   STRATUM_LIMIT_JOINING = 99,
+  // Limit: a level near a singularity: along a direction it is driven less than it asks.
+  STRATUM_LIMIT_DEGRADED = 100,
+  // Limit: a level in a singularity: a direction is given to the levels below.
+  STRATUM_LIMIT_RELEASED = 101,
+  // Limit: command of a level shortened: its error, or a direction that it loses.
+  STRATUM_LIMIT_SHAPED = 102,
+  // Limit: a level, or the null space, gets a share of what it asks the joints for.
+  STRATUM_LIMIT_SCALED = 103,
+  // Limit: a joint at what its range or its speed limit allows.
+  STRATUM_LIMIT_BOUNDED = 104,
+  // Limit: bounds of the joints kept by a cut: too many at once to share out.
+  STRATUM_LIMIT_UNRESOLVED = 105,
 };
 
 // What a level tracks.
@@ -185,10 +201,10 @@ enum {
 };
 
 // Storage of a controller in words of 8 bytes.
-#define STRATUM_CONTROLLER_WORDS 664
+#define STRATUM_CONTROLLER_WORDS 900
 
 // Storage of a state in words of 8 bytes.
-#define STRATUM_STATE_WORDS 1168
+#define STRATUM_STATE_WORDS 1500
 
 // sizeof(StratumController).
 #define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)
@@ -206,7 +222,7 @@ enum {
 #define STRATUM_TEXT_SIZE 512
 
 // sizeof(StratumStatus).
-#define STRATUM_STATUS_SIZE 56
+#define STRATUM_STATUS_SIZE 88
 
 // Joints of an arm.
 #define STRATUM_JOINTS 7
@@ -227,7 +243,7 @@ enum {
 #define STRATUM_ON_TOOL 8
 
 // sizeof(StratumSettings).
-#define STRATUM_SETTINGS_SIZE 4824
+#define STRATUM_SETTINGS_SIZE 5296
 
 // Pose of a frame in a parent frame.
 typedef struct StratumPose {
@@ -296,6 +312,23 @@ typedef struct StratumLink {
   double brake_rate_limit;
 } StratumLink;
 
+// How the law keeps joints within their ranges and speed limits. All zeros: a rule makes it
+// from the rest of the tables.
+typedef struct StratumJointLimits {
+  // Largest acceleration that is asked of a joint, rad/s2.
+  double acceleration[STRATUM_JOINTS];
+  // Braking before the end of a range, rad/s2.
+  double braking[STRATUM_JOINTS];
+  // How fast the speed of a joint comes to what it may be, 1/s.
+  double speed_gain[STRATUM_JOINTS];
+  // How fast the last bit of the way to an end is gone, 1/s.
+  double position_gain;
+  // So far before the end of its range a joint stops, rad.
+  double margin;
+  // Share of the speed limit that a joint may use.
+  double speed_share;
+} StratumJointLimits;
+
 // Tables of an arm and how it is mounted.
 typedef struct StratumArm {
   // Its name, for the caller's logs; not read.
@@ -308,6 +341,8 @@ typedef struct StratumArm {
   double gravity[3];
   // Links, base to flange.
   struct StratumLink links[STRATUM_JOINTS];
+  // What the law may do with the joints.
+  struct StratumJointLimits limits;
 } StratumArm;
 
 // A tool, gripper or load fixed to the flange. Without mass and inertia it is only a frame.
@@ -322,6 +357,22 @@ typedef struct StratumTool {
   // Ixx Ixy Ixz Iyy Iyz Izz.
   double inertia[6];
 } StratumTool;
+
+// What happens to a level near singularities and far from its target; orientations count at
+// 0.1 m from their origin. All zeros: what the place of the level calls for.
+typedef struct StratumLevelLimits {
+  // Below this mobility a direction is driven less, 1/kg.
+  double drive_mobility;
+  // Below this mobility a direction is given to the levels below, 1/kg.
+  double release_mobility;
+  // No error calls for more speed than this, m/s.
+  double error_speed;
+  // No more speed is asked for along a direction that is lost, m/s.
+  double lost_speed;
+  // Where joints are at their bounds, a direction with this mobility resists them as much
+  // again as the arm does, 1/kg.
+  double stiff_mobility;
+} StratumLevelLimits;
 
 // One priority level.
 typedef struct StratumLevel {
@@ -341,6 +392,8 @@ typedef struct StratumLevel {
   double stiffness[3][3];
   // Damping of the error, 1/s.
   double damping[3][3];
+  // What happens near singularities and far from the target.
+  struct StratumLevelLimits limits;
 } StratumLevel;
 
 // Everything a controller is made of.
@@ -430,6 +483,22 @@ typedef struct StratumStatus {
   // STRATUM_LIMIT_JOINING: levels on their way to a reference that jumped, bit 0 is
   // level 1; bit 7 is the posture.
   uint32_t joining;
+  // STRATUM_LIMIT_DEGRADED: levels, bit 0 is level 1.
+  uint32_t degraded;
+  // STRATUM_LIMIT_RELEASED: levels.
+  uint32_t released;
+  // STRATUM_LIMIT_SHAPED: levels.
+  uint32_t shaped;
+  // STRATUM_LIMIT_SCALED: levels; bit 7 is the null space.
+  uint32_t scaled;
+  // STRATUM_LIMIT_BOUNDED: joints that may not go further down, bit 0 is joint 1.
+  uint32_t at_least;
+  // STRATUM_LIMIT_BOUNDED: joints that may not go further up.
+  uint32_t at_greatest;
+  // STRATUM_LIMIT_UNRESOLVED: 1 where it is so.
+  uint32_t unresolved;
+  // Exchanges that the projection onto the bounds of the joints took, 0 to 12.
+  uint32_t pivots;
 } StratumStatus;
 
 #ifdef __cplusplus
@@ -478,6 +547,11 @@ StratumResult stratum_settings_text(const struct StratumSettings *settings,
 // storage holds no controller.
 StratumResult stratum_controller_init(struct StratumController *controller,
                                       const struct StratumSettings *settings);
+
+// The same with the exact law, which knows nothing of singularities, ranges and speed limits.
+// A program that never calls stratum_controller_init is linked with this law alone.
+StratumResult stratum_controller_init_exact(struct StratumController *controller,
+                                            const struct StratumSettings *settings);
 
 // Before the first cycle: nothing observed, no fault; the references keep every
 // level and the null space at the posture `q` in rad, which must be one that the arm can

@@ -7,13 +7,9 @@ use arms::LWR_IV;
 use controller_core::arm::{
     ArmError, ArmParameters, EndApproach, Friction, JointLimits, LinkParameters, Pose, Tool,
 };
-use controller_core::{ConfigError, Controller, ControllerConfig};
+use controller_core::{ConfigError, Controller, ControllerConfig, MakeController};
 
 use crate::scalar::Scalar;
-
-/// `Controller::new` or `Controller::exact`: which law a controller has.
-pub(crate) type MakeController =
-    fn(&ArmParameters, &ControllerConfig) -> Result<Controller<Scalar>, ConfigError>;
 
 /// Joints of an arm.
 pub const STRATUM_JOINTS: usize = 7;
@@ -336,7 +332,7 @@ impl StratumArm {
     #[inline(never)]
     pub(crate) fn controller<'a>(
         &self,
-        law: MakeController,
+        law: MakeController<Scalar>,
         tool: &StratumTool,
         config: &ControllerConfig,
         place: &'a mut MaybeUninit<Controller<Scalar>>,

@@ -14,11 +14,11 @@ use controller_core::law::null_space::{NullDamping, Posture};
 use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS};
 use controller_core::task::LevelLimits;
 use controller_core::{
-    Axes, ConfigError, Controller, ControllerConfig, Link, LinkFrame, LinkPoint, NullSpace, Task,
-    TaskGains, TaskSet,
+    Axes, ConfigError, Controller, ControllerConfig, Link, LinkFrame, LinkPoint, MakeController,
+    NullSpace, Task, TaskGains, TaskSet,
 };
 
-use crate::arm::{MakeController, STRATUM_JOINTS, StratumArm, StratumTool};
+use crate::arm::{STRATUM_JOINTS, StratumArm, StratumTool};
 use crate::codes::{self, StratumResult};
 use crate::constants::{
     STRATUM_AXIS_X, STRATUM_AXIS_Y, STRATUM_AXIS_Z, STRATUM_DAMPING_INERTIA, STRATUM_DAMPING_JOINT,
@@ -291,7 +291,7 @@ impl StratumSettings {
     /// own, so that they need it one after the other.
     pub(crate) fn controller<'a>(
         &self,
-        law: MakeController,
+        law: MakeController<Scalar>,
         place: &'a mut MaybeUninit<Controller<Scalar>>,
     ) -> Result<&'a mut Controller<Scalar>, Refusal> {
         if self.abi != STRATUM_ABI_VERSION {

@@ -16,6 +16,7 @@ mod step;
 pub(crate) mod usable;
 pub mod velocity;
 
+pub use construction::MakeController;
 pub use controller::Controller;
 pub use data::{Data, Input, State};
 pub use inspection::Inspection;

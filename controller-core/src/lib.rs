@@ -94,7 +94,7 @@ pub use nalgebra;
 pub use arm::{Link, LinkFrame, LinkPoint};
 pub use cycle::config::ControllerConfig;
 pub use cycle::measurement::Measurement;
-pub use cycle::{Controller, State, Step};
+pub use cycle::{Controller, MakeController, State, Step};
 pub use error::ConfigError;
 pub use fault::{Fault, Status};
 pub use law::null_space::NullSpace;

@@ -55,7 +55,7 @@ impl Experiment {
     /// strong for the cycle.
     pub fn controller(&self) -> Result<Controller<f64>, Invalid> {
         let make = match self.controller {
-            ControllerKind::Torque(TorqueLaw::Hierarchical) => Controller::new,
+            ControllerKind::Torque(TorqueLaw::Hierarchical) => self.scenario.law.maker(),
             // The others take the place of the exact law.
             _ => Controller::exact,
         };

@@ -1,7 +1,7 @@
 //! What a session is made of.
 
 use controller_core::arm::ArmParameters;
-use controller_core::{ControllerConfig, LinkPoint};
+use controller_core::{Controller, ControllerConfig, LinkPoint, MakeController};
 
 /// What the robot adds to the torque that it is sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub struct SessionConfig {
     pub arm: ArmParameters,
     /// Tasks and gains. The cycle comes from the robot.
     pub controller: ControllerConfig,
+    /// What makes the controller, and with it its law.
+    pub law: MakeController<f64>,
     /// The flange, for the audit of the robot's Jacobian.
     pub flange: LinkPoint,
     /// What must not be sent.
@@ -56,6 +58,7 @@ impl SessionConfig {
         Self {
             arm: *arm,
             controller,
+            law: Controller::new,
             flange,
             robot_adds: RobotAdds::Gravity,
             settle_s: 1.0,

@@ -4,6 +4,7 @@ use controller_core::{Axes, Task, TaskGains};
 use serde::Deserialize;
 
 use super::arm::EquippedArm;
+use super::near::LevelLimitsSpec;
 use super::point::PointSpec;
 use super::reference::ReferenceSpec;
 use crate::invalid::Invalid;
@@ -35,6 +36,9 @@ pub struct LevelSpec {
     pub stiffness: AxisGain,
     /// K_d \[1/s\].
     pub damping: AxisGain,
+    /// What happens near singularities and far from the target.
+    #[serde(default)]
+    pub limits: Option<LevelLimitsSpec>,
     /// Motion of the point.
     pub reference: ReferenceSpec,
 }
@@ -84,14 +88,19 @@ impl LevelSpec {
             };
             return Err(Invalid::new("reference", given, allowed));
         }
+        if let Some(limits) = &self.limits {
+            limits
+                .validate()
+                .map_err(|error| error.in_table("limits"))?;
+        }
         self.reference
             .validate()
             .map_err(|error| error.in_table("reference"))
     }
 
-    /// The core's task for `arm`. The level must be valid.
+    /// The core's task for `arm`, at the place `place`, counted from 0. The level must be valid.
     #[must_use]
-    pub fn task(&self, arm: &EquippedArm) -> Task {
+    pub fn task(&self, place: usize, arm: &EquippedArm) -> Task {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |gain: &AxisGain| match gain {
             AxisGain::Uniform(value) => [*value; 3],
@@ -107,9 +116,13 @@ impl LevelSpec {
             }
         };
         let gains = TaskGains::diagonal(spread(&self.stiffness), spread(&self.damping));
-        match self.task {
+        let task = match self.task {
             TaskSpec::Position => Task::position(self.point.resolve(arm), axes, gains),
             TaskSpec::Orientation => Task::orientation(self.point.frame(arm), axes, gains),
+        };
+        Task {
+            limits: self.limits.map(|limits| limits.of_level(place)),
+            ..task
         }
     }
 

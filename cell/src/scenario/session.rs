@@ -25,6 +25,7 @@ impl Scenario {
         controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
         let arm = self.arm().parameters;
         Ok(SessionConfig {
+            law: self.law.maker(),
             // A damaged datagram or two are no fault of the arm.
             doubted_max: 2,
             ..SessionConfig::new(&arm, controller, arm.flange_point(), duration_s)

@@ -14,6 +14,10 @@ use crate::law::sampling::DampingRate;
 use crate::real::Real;
 use crate::task::Levels;
 
+/// What makes a controller: [`Controller::new`] or [`Controller::exact`].
+pub type MakeController<T> =
+    fn(&ArmParameters, &ControllerConfig) -> Result<Controller<T>, ConfigError>;
+
 impl<T: Real> Controller<T> {
     /// The law within limits ([`crate::law::limits`]). Validates arm and configuration and
     /// converts them to the precision `T`.

@@ -21,4 +21,4 @@ pub mod spectrum;
 mod tableau;
 pub mod wish;
 
-pub(crate) use rule::joint_limits;
+pub use rule::joint_limits;
