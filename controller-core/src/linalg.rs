@@ -142,15 +142,12 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for i in 0..DOF {
-            y[i] = self.l[(i, 0)] * x[0];
-        }
-        for_each_joint!(j, {
-            for i in j.max(1)..DOF {
-                if j > 0 {
-                    y[i] += self.l[(i, j)] * x[j];
-                }
+        for_each_joint!(i, {
+            let mut sum = self.l[(i, 0)] * x[0];
+            for j in 1..=i {
+                sum += self.l[(i, j)] * x[j];
             }
+            y[i] = sum;
         });
         y
     }
