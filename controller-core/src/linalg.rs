@@ -142,12 +142,13 @@ impl<T: Real> Cholesky<T> {
     #[inline]
     pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for_each_joint!(i, {
-            let mut sum = self.l[(i, 0)] * x[0];
-            for j in 1..=i {
-                sum += self.l[(i, j)] * x[j];
+        for i in 0..DOF {
+            y[i] = self.l[(i, i)] * x[i];
+        }
+        for_each_joint!(j, {
+            for i in j + 1..DOF {
+                y[i] += self.l[(i, j)] * x[j];
             }
-            y[i] = sum;
         });
         y
     }
