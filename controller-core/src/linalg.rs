@@ -143,13 +143,11 @@ impl<T: Real> Cholesky<T> {
     pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
         for i in 0..DOF {
-            y[i] = self.l[(i, 0)] * x[0];
+            y[i] = self.l[(i, i)] * x[i];
         }
         for_each_joint!(j, {
-            for i in j.max(1)..DOF {
-                if j > 0 {
-                    y[i] += self.l[(i, j)] * x[j];
-                }
+            for i in j + 1..DOF {
+                y[i] += self.l[(i, j)] * x[j];
             }
         });
         y

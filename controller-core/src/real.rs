@@ -50,6 +50,11 @@ pub trait Real:
     fn with_sign_of(self, sign: Self) -> Self;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
+    /// The larger of two numbers, the other one where one is NaN; of two zeros either: one
+    /// instruction on a Cortex-M7, for what does not depend on the sign of a zero.
+    fn most(self, other: Self) -> Self;
+    /// The smaller one, likewise.
+    fn least(self, other: Self) -> Self;
 
     /// `self` limited to `low..=high`; NaN stays NaN.
     fn limited(self, low: Self, high: Self) -> Self {
@@ -200,6 +205,16 @@ macro_rules! real {
             #[inline(always)]
             fn finite(self) -> bool {
                 self.is_finite()
+            }
+
+            #[inline(always)]
+            fn most(self, other: Self) -> Self {
+                self.max(other)
+            }
+
+            #[inline(always)]
+            fn least(self, other: Self) -> Self {
+                self.min(other)
             }
         }
     };

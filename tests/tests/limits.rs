@@ -3,3 +3,5 @@
 
 #[path = "limits/equality.rs"]
 mod equality;
+#[path = "limits/projection.rs"]
+mod projection;

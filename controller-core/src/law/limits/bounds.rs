@@ -83,12 +83,7 @@ impl<T: Real> JointBounds<T> {
         let by_range = gain * (allowed - speed) - slope * speed;
         let by_speed = gain * (self.speed[joint] - speed);
         let alpha = self.acceleration[joint];
-        let least = if by_range < by_speed {
-            by_range
-        } else {
-            by_speed
-        };
-        least.limited(-alpha, alpha)
+        by_range.least(by_speed).most(-alpha).least(alpha)
     }
 }
 
@@ -119,8 +114,8 @@ impl<T: Real> AccelerationBounds<T> {
             let (q, dq) = (joints.q[i], joints.dq[i]);
             let up = bounds.towards(i, high[i] - q, dq);
             let down = -bounds.towards(i, q - low[i], -dq);
-            self.greatest[i] = up.larger(down);
-            self.least[i] = if up < down { up } else { down };
+            self.greatest[i] = up.most(down);
+            self.least[i] = up.least(down);
         }
     }
 

@@ -45,6 +45,8 @@ pub struct Projection<T: Real> {
     pub power: T,
     /// dev \[m/s2\]: the disturbance smoothed, remembered from cycle to cycle.
     smoothed: [T; MAX_LEVELS],
+    /// Of the cycle alone; here, because on the stack it would have to be cleared first.
+    search: Search<T>,
 }
 
 /// What is projected, and by what measure.
@@ -71,6 +73,7 @@ impl<T: Real> Projection<T> {
             disturbance: [T::ZERO; MAX_LEVELS],
             power: T::ZERO,
             smoothed: [T::ZERO; MAX_LEVELS],
+            search: Search::new(),
         }
     }
 
@@ -102,21 +105,21 @@ impl<T: Real> Projection<T> {
     #[inline(never)]
     fn project(&mut self, wished: &Wished<'_, T>) {
         let bounds = wished.bounds;
-        let mut search = Search::new(self.compliance(wished), wished.acceleration, bounds);
-        let mut pushed = search.worst();
+        self.set_compliance(wished);
+        let search = &mut self.search;
+        let mut pushed = search.start(wished.acceleration, bounds);
         self.pivots = 0;
         while pushed != NONE && self.pivots < PIVOTS {
-            pushed = search.exchange(pushed % WIDTH);
             self.pivots += 1;
+            pushed = search.exchange(pushed % WIDTH, self.pivots == PIVOTS);
         }
         self.at_bound = [IndexSet::NONE; 2];
         let mut within = true;
         for i in 0..DOF {
             let (a, low, high) = (search.acceleration(i), bounds.least[i], bounds.greatest[i]);
-            within &= (a >= low) & (a <= high);
             // What is not a number is cut as well; the torque of the wish still shows it.
-            let cut = a.larger(low);
-            let cut = if cut < high { cut } else { high };
+            let cut = a.most(low).least(high);
+            within &= cut == a;
             self.at_bound[0].insert_if(i, cut == low);
             self.at_bound[1].insert_if(i, cut == high);
             self.acceleration[i] = cut;
@@ -127,9 +130,10 @@ impl<T: Real> Projection<T> {
 
     /// T.
     #[inline(always)]
-    fn compliance(&self, wished: &Wished<'_, T>) -> Tableau<T> {
+    fn set_compliance(&mut self, wished: &Wished<'_, T>) {
         let cholesky = &wished.dynamics.cholesky;
-        let mut tableau = Tableau::inverse(&cholesky.inverse_factor());
+        let tableau = &mut self.search.tableau;
+        tableau.set_inverse(cholesky);
         let softening = T::from_f64(1.0 / SOFTENING_DISTURBANCE);
         for (level, &smoothed) in wished.levels.as_slice().iter().zip(&self.smoothed) {
             let share = smoothed * softening;
@@ -140,7 +144,7 @@ impl<T: Real> Projection<T> {
                 tableau.stiffen(&cholesky.solve_upper(&direction.along), held);
             }
         }
-        tableau
+        tableau.mirror();
     }
 
     /// What the difference to the wish does.
@@ -171,51 +175,57 @@ impl<T: Real> Default for Projection<T> {
 const NONE: usize = DOF;
 
 /// The dual active set on its way. Joints at a bound are those that are swept into the tableau.
+// In this order in memory: what an exchange reads besides the tableau lies in reach of one base.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
 struct Search<T: Real> {
-    tableau: Tableau<T>,
     /// a \[rad/s2\] of free joints, the multiplier \[Nm\] of joints at a bound.
     point: [T; WIDTH],
     /// 1 of joints at a bound, 0 of free ones.
     held: [T; WIDTH],
+    /// 1 / sqrt(T_jj) of joints that may be chosen, T_jj before any sweep; 0 of others.
+    choice: [T; WIDTH],
     least: [T; WIDTH],
     greatest: [T; WIDTH],
     /// The bound that a joint is at, or pushed to.
     bound: [T; WIDTH],
-    /// 1 / T_jj before any sweep.
+    /// 1 / T_jj.
     weight: [T; WIDTH],
-    /// The same of joints that may be chosen, 0 of others.
-    choice: [T; WIDTH],
     /// The multiplier so far of the joint that is pushed.
     so_far: T,
+    tableau: Tableau<T>,
 }
 
 impl<T: Real> Search<T> {
     #[inline(always)]
-    fn new(
-        tableau: Tableau<T>,
-        acceleration: &JointVector<T>,
-        bounds: &AccelerationBounds<T>,
-    ) -> Self {
-        let mut search = Self {
-            tableau,
+    const fn new() -> Self {
+        Self {
             point: [T::ZERO; WIDTH],
             held: [T::ZERO; WIDTH],
+            choice: [T::ZERO; WIDTH],
             least: [T::ZERO; WIDTH],
             greatest: [T::ZERO; WIDTH],
             bound: [T::ZERO; WIDTH],
             weight: [T::ZERO; WIDTH],
-            choice: [T::ZERO; WIDTH],
             so_far: T::ZERO,
-        };
-        for i in 0..DOF {
-            let weight = T::ONE / search.tableau.diagonal(i);
-            search.point[i] = acceleration[i];
-            search.least[i] = bounds.least[i];
-            search.greatest[i] = bounds.greatest[i];
-            search.weight[i] = weight;
-            search.choice[i] = weight;
+            tableau: Tableau::new(),
         }
-        search
+    }
+
+    /// All joints free, the tableau T; returns the joint to push first, or [`NONE`].
+    #[inline(always)]
+    fn start(&mut self, wish: &JointVector<T>, bounds: &AccelerationBounds<T>) -> usize {
+        for i in 0..DOF {
+            let weight = T::ONE / self.tableau.diagonal(i);
+            self.point[i] = wish[i];
+            self.held[i] = T::ZERO;
+            self.least[i] = bounds.least[i];
+            self.greatest[i] = bounds.greatest[i];
+            self.weight[i] = weight;
+            self.choice[i] = weight.square_root();
+        }
+        let worst = self.go(0, T::ZERO);
+        self.choose(worst)
     }
 
     /// a of a joint.
@@ -230,42 +240,43 @@ impl<T: Real> Search<T> {
     }
 
     /// One exchange: a joint onto its bound, or on the way there another one off its own. Returns
-    /// the joint to push next, [`NONE`] where no bound is violated any more.
+    /// the joint to push next, [`NONE`] where no bound is violated any more. The tableau behind
+    /// the `last` exchange has no meaning.
     #[inline(always)]
-    fn exchange(&mut self, pushed: usize) -> usize {
-        let row = self.tableau.row(pushed);
-        let pivot = row[pushed];
-        let violation = self.point[pushed] - self.bound[pushed];
-        let (step, dropped) = self.reach(violation / pivot, &row);
-        self.so_far += step;
-        for i in 0..DOF {
-            self.point[i] -= row[i] * step;
+    fn exchange(&mut self, pushed: usize, last: bool) -> usize {
+        let pivot = self.tableau.diagonal(pushed);
+        // Where nothing gives way to it any more the cut in the end keeps its bound.
+        let gives = pivot * self.weight[pushed] > T::PIVOT_SHARE;
+        let way = self.point[pushed] - self.bound[pushed];
+        let way = if gives { way } else { T::ZERO };
+        let step = way / if gives { pivot } else { T::ONE };
+        let (dropped, worst) = self.advance(pushed, step);
+        let done = dropped == NONE;
+        if !gives {
+            return self.choose(worst);
         }
-        if pivot * self.weight[pushed] <= T::PIVOT_SHARE {
-            // Nothing gives way to it any more: the cut in the end keeps its bound.
-            self.choice[pushed] = T::ZERO;
-            self.worst()
-        } else if dropped == NONE {
+        let swept = if done { pushed } else { dropped % WIDTH };
+        if done {
             self.point[pushed] = self.so_far;
             self.held[pushed] = T::ONE;
-            self.choice[pushed] = T::ZERO;
-            self.tableau.sweep(pushed, &row, T::ONE);
-            self.worst()
         } else {
-            let dropped = dropped % WIDTH;
-            self.point[dropped] = self.bound[dropped];
-            self.held[dropped] = T::ZERO;
-            self.choice[dropped] = self.weight[dropped];
-            let row = self.tableau.row(dropped);
-            self.tableau.sweep(dropped, &row, -T::ONE);
-            pushed
+            self.point[swept] = self.bound[swept];
+            self.held[swept] = T::ZERO;
+            self.choice[swept] = self.weight[swept].square_root();
         }
+        if last || (done && worst == NONE) {
+            return NONE;
+        }
+        self.tableau
+            .sweep(swept, if done { T::ONE } else { -T::ONE });
+        if done { self.choose(worst) } else { pushed }
     }
 
-    /// How far the multiplier of the pushed joint goes of `step`: all the way, or until the first
-    /// joint leaves its bound; and that joint, or [`NONE`].
+    /// Moves the multiplier of the pushed joint by `step`, or until the first joint leaves its
+    /// bound: that one, or [`NONE`]; and what [`Search::go`] returns.
     #[inline(always)]
-    fn reach(&self, step: T, row: &[T; WIDTH]) -> (T, usize) {
+    fn advance(&mut self, pushed: usize, step: T) -> (usize, usize) {
+        let row = self.tableau.row(pushed);
         // Above 1 a multiplier changes its sign on the way.
         let (mut most, mut dropped) = (T::ONE, NONE);
         for i in 0..DOF {
@@ -274,26 +285,40 @@ impl<T: Real> Search<T> {
                 (most, dropped) = (way, i);
             }
         }
-        (step / most, dropped)
+        let step = step / most;
+        self.so_far += step;
+        if dropped == NONE {
+            self.choice[pushed] = T::ZERO;
+        }
+        (dropped, self.go(pushed, step))
     }
 
-    /// The joint whose bound is violated worst, by the cost of pushing it there, or [`NONE`]: it
-    /// is ready to be pushed. Behind a call: it is in the flash once.
-    #[inline(never)]
-    fn worst(&mut self) -> usize {
+    /// Moves the multiplier of a joint by `step`. Returns the joint whose bound is then violated
+    /// worst, by the cost of pushing it there, or [`NONE`].
+    #[inline(always)]
+    fn go(&mut self, pushed: usize, step: T) -> usize {
+        let row = self.tableau.row(pushed);
         let (mut worst, mut most) = (NONE, T::ZERO);
         for i in 0..DOF {
-            let value = self.point[i];
-            let above = (value - self.greatest[i]).larger(self.least[i] - value);
-            let violation = above.larger(T::ZERO);
-            let cost = violation * violation * self.choice[i];
+            let value = self.point[i] - row[i] * step;
+            self.point[i] = value;
+            let violation = (value - self.greatest[i]).most(self.least[i] - value);
+            let cost = violation * self.choice[i];
             if cost > most {
                 (most, worst) = (cost, i);
             }
         }
-        let joint = worst % WIDTH;
-        self.so_far = T::ZERO;
-        self.bound[joint] = self.point[joint].limited(self.least[joint], self.greatest[joint]);
         worst
+    }
+
+    /// Makes a joint, or [`NONE`], ready to be pushed.
+    #[inline(always)]
+    fn choose(&mut self, joint: usize) -> usize {
+        let place = joint % WIDTH;
+        self.so_far = T::ZERO;
+        self.bound[place] = self.point[place]
+            .most(self.least[place])
+            .least(self.greatest[place]);
+        joint
     }
 }

@@ -93,7 +93,7 @@ impl<T: Real> Sum<T> {
         let mut most = T::ONE;
         for i in 0..DOF {
             let of_joint = (acceleration[i] * ask.bounds.inverse_acceleration[i]).magnitude();
-            most = if of_joint > most { of_joint } else { most };
+            most = most.most(of_joint);
         }
         let mut share = T::ONE / most;
         let torque = cholesky.lower_times(stage);
@@ -193,7 +193,7 @@ fn torque_share<T: Real>(
         let towards = if asked < T::ZERO { -before } else { before };
         let room = (limit[i] - towards).larger(T::ZERO);
         let of_joint = room / asked.magnitude().larger(least);
-        share = if of_joint < share { of_joint } else { share };
+        share = share.least(of_joint);
     }
     share
 }
