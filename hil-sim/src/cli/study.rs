@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::interrupt;
 use crate::study::limits::acceptance::{self, Criterion};
+use crate::study::limits::case::is_lwr;
 use crate::study::limits::jobs::{Plan, SetOutcome};
 use crate::study::limits::run::{Law, Precision};
 use crate::study::limits::set::Set;
@@ -17,6 +18,7 @@ use cell::arguments::values::whole;
 use cell::invalid::Invalid;
 use cell::names::{Named, PlantKind};
 use cell::ranges::Range;
+use cell::scenario::EquippedArm;
 use cell::terminal::{print, show};
 
 /// Runs of a set, and at the same time.
@@ -119,11 +121,11 @@ impl LimitsOptions {
             .iter()
             .map(|outcome| SetReport {
                 outcome,
-                acceptance: acceptance::judge(outcome, plan.plant, plan.precision),
+                acceptance: acceptance::judge(outcome, &plan),
             })
             .collect();
         let report = Report {
-            arm: plan.arm.name,
+            arm: plan.arm.parameters.name,
             plant: plan.plant.name(),
             precision: plan.precision.name(),
             sets,
@@ -139,17 +141,14 @@ impl LimitsOptions {
     }
 
     fn plan(&self) -> Result<Plan, Invalid> {
-        let arm = arms::by_name(&self.arm).ok_or_else(|| {
-            let known = arms::ALL.map(|arm| arm.name);
-            Invalid::name("arm", &self.arm, &known)
-        })?;
+        let arm = EquippedArm::new(&self.arm, None, None)?;
         let laws = match self.law.as_str() {
             "both" => vec![Law::Exact, Law::WithinLimits],
             name => vec![law(name)?],
         };
         let there = |set: &Set| match &self.from {
             Some(_) => Set::IN_FILES.contains(set),
-            None => arm.name == arms::LWR_IV.name || set.is_for_any_arm(),
+            None => is_lwr(&arm) || set.is_for_any_arm(),
         };
         let mut sets: Vec<_> = Set::ALL.iter().map(|(_, set)| *set).filter(there).collect();
         if !self.sets.is_empty() {

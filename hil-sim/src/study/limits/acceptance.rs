@@ -3,7 +3,8 @@
 use cell::names::PlantKind;
 use serde::Serialize;
 
-use super::jobs::SetOutcome;
+use super::case::is_lwr;
+use super::jobs::{Plan, SetOutcome};
 use super::outcome::{LevelOutcome, Outcome};
 use super::run::Precision;
 use super::set::Set;
@@ -86,25 +87,25 @@ fn level_1(runs: &[Outcome], figure: impl Fn(&LevelOutcome) -> f64) -> f64 {
     largest(runs, |run| run.levels.first().map_or(f64::NAN, &figure))
 }
 
-/// What of a set is judged under these conditions.
+/// What of a set is judged under the conditions of `plan`. Limits of torques are for the LWR:
+/// arms of another size have other ones.
 #[must_use]
-pub fn judge(of_set: &SetOutcome, plant: PlantKind, precision: Precision) -> Vec<Criterion> {
+pub fn judge(of_set: &SetOutcome, plan: &Plan) -> Vec<Criterion> {
     let runs = &of_set.within_limits;
     if runs.is_empty() {
         return Vec::new();
     }
-    match (plant, of_set.set) {
-        (PlantKind::Ideal, Set::Ordered) => ordered(runs, precision),
-        (PlantKind::Ideal, Set::Pass) => passes(runs, precision),
+    match (plan.plant, of_set.set) {
+        (PlantKind::Ideal, Set::Ordered) => ordered(runs, plan.precision),
+        (PlantKind::Ideal, Set::Pass) => passes(runs, plan),
         (PlantKind::Ideal, Set::Wrist) => wrist(runs),
-        (PlantKind::Ideal, Set::Random) => random(runs),
+        (PlantKind::Ideal, Set::Random) => random(runs, plan),
         (PlantKind::Ideal, Set::Push) => pushes(runs, &of_set.exact),
         (PlantKind::Ideal, Set::Give) => gives_way(runs, &of_set.exact),
-        (PlantKind::Ideal, Set::Saturation) => vec![below(
-            "level 1, largest error mm",
-            level_1(runs, |level| level.max),
-            0.6,
-        )],
+        (PlantKind::Ideal, Set::Saturation) => {
+            let largest = level_1(runs, |level| level.max);
+            vec![below("level 1, largest error mm", largest, 0.6)]
+        }
         (PlantKind::Realistic, Set::Random) => vec![outside(runs)],
         (PlantKind::Realistic, _) => Vec::new(),
     }
@@ -142,14 +143,16 @@ fn leak(runs: &[Outcome]) -> Criterion {
     at_most("level 1, leak m/s2 where nothing is released", leak, LEAK)
 }
 
-fn passes(runs: &[Outcome], precision: Precision) -> Vec<Criterion> {
+fn passes(runs: &[Outcome], plan: &Plan) -> Vec<Criterion> {
     let mut all = vec![stops(runs)];
-    all.extend(steps(runs, [2.0, 9.0, 15.0]));
-    let small = count(runs, |run| run.step.nm < SMALL_STEP_NM) / runs.len() as f64;
-    let what = format!("share of runs with steps below {SMALL_STEP_NM} Nm");
-    all.push(at_least(what, small, SMALL_STEP_SHARE));
+    if is_lwr(&plan.arm) {
+        all.extend(steps(runs, [2.0, 9.0, 15.0]));
+        let small = count(runs, |run| run.step.nm < SMALL_STEP_NM) / runs.len() as f64;
+        let what = format!("share of runs with steps below {SMALL_STEP_NM} Nm");
+        all.push(at_least(what, small, SMALL_STEP_SHARE));
+    }
     all.push(back(runs));
-    if precision == Precision::F64 {
+    if plan.precision == Precision::F64 {
         all.push(leak(runs));
     }
     all
@@ -164,11 +167,13 @@ fn wrist(runs: &[Outcome]) -> Vec<Criterion> {
     ]
 }
 
-fn random(runs: &[Outcome]) -> Vec<Criterion> {
+fn random(runs: &[Outcome], plan: &Plan) -> Vec<Criterion> {
     let mut all = vec![stops(runs), outside(runs)];
     let fastest = largest(runs, |run| run.speed_share);
     all.push(at_most("speed, of its limit", fastest, 0.98));
-    all.extend(steps(runs, [8.0, 18.0, 35.0]));
+    if is_lwr(&plan.arm) {
+        all.extend(steps(runs, [8.0, 18.0, 35.0]));
+    }
     let sum = |cycles: fn(&Outcome) -> usize| runs.iter().map(cycles).sum::<usize>() as f64;
     let saturated = sum(|run| run.limited.saturated);
     all.push(at_most("cycles with a torque cut", saturated, 0.0));
@@ -179,12 +184,15 @@ fn random(runs: &[Outcome]) -> Vec<Criterion> {
     all
 }
 
-/// Far from limits, where every push begins, both laws are one: limits add nothing to what the
-/// push does to the flange.
+/// Limits add nothing to what a push does to the flange, where the exact law keeps the arm
+/// within its ranges.
 fn pushes(runs: &[Outcome], exact: &[Outcome]) -> Vec<Criterion> {
     let mut all = vec![outside(runs)];
-    let ratio = |(run, exact): (&Outcome, &Outcome)| run.levels[0].max / exact.levels[0].max;
-    let ratios: Vec<_> = runs.iter().zip(exact).map(ratio).collect();
+    let pairs = runs.iter().zip(exact);
+    let pairs = pairs.filter(|(_, exact)| exact.stop.is_none() && exact.beyond_deg <= 0.0);
+    let ratios: Vec<_> = pairs
+        .map(|(run, exact)| run.levels[0].max / exact.levels[0].max)
+        .collect();
     if !ratios.is_empty() {
         let what = "level 1, largest error, of that of the exact law";
         all.push(at_most(what, percentile(&ratios, 1.0), 1.01));

@@ -1,17 +1,25 @@
 //! A run as data: an arm, where it starts, what its levels are to follow, what pushes it.
 
 use cell::invalid::Invalid;
-use cell::scenario::{Push, Scenario};
-use controller_core::arm::ArmParameters;
+use cell::scenario::{EquippedArm, Push, Scenario};
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
 use controller_core::{
-    Axes, ControllerConfig, Link, LinkPoint, Reference, Target, Task, TaskGains, TaskSet,
+    Axes, ControllerConfig, LinkPoint, Reference, Target, Task, TaskGains, TaskSet,
 };
 
 /// The scenario whose gains all runs have.
 const GAINS: &str = "two-level";
+
+/// The arm that most runs are made for.
+pub const LWR: &str = "lwr_iv";
+
+/// Whether it is that arm.
+#[must_use]
+pub fn is_lwr(arm: &EquippedArm) -> bool {
+    arm.parameters.name == LWR
+}
 
 /// Seed of masses and noise of the realistic plant, but where a run says otherwise.
 pub const PLANT_SEED: u64 = 3;
@@ -31,7 +39,7 @@ pub struct Case {
     /// Its name.
     pub name: String,
     /// The arm, which may have other limits than its table.
-    pub arm: ArmParameters,
+    pub arm: EquippedArm,
     /// Where it starts, at rest \[rad\].
     pub start: JointVector<f64>,
     /// q_d \[rad\].
@@ -61,13 +69,13 @@ impl Case {
     #[must_use]
     pub fn at_rest(
         name: String,
-        arm: &ArmParameters,
+        arm: &EquippedArm,
         start: JointVector<f64>,
         levels: Vec<CaseLevel>,
     ) -> Self {
         Self {
             name,
-            arm: *arm,
+            arm: arm.clone(),
             start,
             posture: start,
             levels,
@@ -123,13 +131,14 @@ impl Case {
     /// # Errors
     /// Levels that the core does not take.
     pub fn config(&self) -> Result<ControllerConfig, Invalid> {
-        let gains = Scenario::find(GAINS)?.controller_config(0)?;
+        let scenario = Scenario::find(GAINS)?;
+        let gains = scenario.controller_config(0)?;
         let tasks: Vec<_> = self.levels.iter().map(|level| level.task).collect();
         let tasks =
             TaskSet::new(&tasks).map_err(|error| Invalid::line(error).within(&self.name))?;
-        let null_space = match self.arm.name == arms::LWR_IV.name {
+        let null_space = match is_lwr(&self.arm) {
             true => gains.null_space,
-            false => proportional(&gains.null_space, &self.arm),
+            false => proportional(&gains.null_space, &self.arm, &scenario.arm()),
         };
         Ok(ControllerConfig {
             tasks,
@@ -144,9 +153,10 @@ impl Case {
 const DAMPING_RATE: f64 = 10.0;
 
 /// K_q in proportion to the torques of the arm.
-fn proportional(null_space: &NullSpace, arm: &ArmParameters) -> NullSpace {
+fn proportional(null_space: &NullSpace, arm: &EquippedArm, of: &EquippedArm) -> NullSpace {
     let stiffness = core::array::from_fn::<_, DOF, _>(|i| {
-        let share = arm.links[i].torque_limit / arms::LWR_IV.links[i].torque_limit;
+        let [own, others] = [arm, of].map(|arm| arm.parameters.links[i].torque_limit);
+        let share = own / others;
         null_space.stiffness[i][i] * share
     });
     NullSpace {
@@ -161,18 +171,17 @@ fn proportional(null_space: &NullSpace, arm: &ArmParameters) -> NullSpace {
 /// # Errors
 /// None, as the scenario is a built-in one.
 pub fn gains() -> Result<TaskGains, Invalid> {
-    Ok(Scenario::find(GAINS)?.levels[0].task().gains)
+    let scenario = Scenario::find(GAINS)?;
+    Ok(scenario.levels[0].task(&scenario.arm()).gains)
 }
 
 /// A named point of an arm.
 ///
 /// # Errors
 /// The names that it has.
-pub fn point(arm: &ArmParameters, name: &str) -> Result<LinkPoint, Invalid> {
-    arm.point(name).ok_or_else(|| {
-        let known: Vec<_> = arm.points.iter().map(|point| point.name).collect();
-        Invalid::name("point", name, &known).within(arm.name)
-    })
+pub fn point(arm: &EquippedArm, name: &str) -> Result<LinkPoint, Invalid> {
+    arm.point(name)
+        .ok_or_else(|| Invalid::name("point", name, &arm.point_names()).within(arm.parameters.name))
 }
 
 impl CaseLevel {
@@ -180,7 +189,7 @@ impl CaseLevel {
     ///
     /// # Errors
     /// A name that the arm does not have.
-    pub fn position(arm: &ArmParameters, name: &str, axes: Axes) -> Result<Self, Invalid> {
+    pub fn position(arm: &EquippedArm, name: &str, axes: Axes) -> Result<Self, Invalid> {
         let label = format!("{name} {}", letters(axes));
         Ok(Self {
             task: Task::position(point(arm, name)?, axes, gains()?),
@@ -188,13 +197,14 @@ impl CaseLevel {
         })
     }
 
-    /// The orientation of the last link.
+    /// The orientation of the flange.
     ///
     /// # Errors
     /// See [`gains`].
-    pub fn orientation() -> Result<Self, Invalid> {
+    pub fn orientation(arm: &EquippedArm) -> Result<Self, Invalid> {
+        let frame = arm.parameters.flange_frame();
         Ok(Self {
-            task: Task::orientation(Link::L7, Axes::XYZ, gains()?),
+            task: Task::orientation(frame, Axes::XYZ, gains()?),
             label: "flange about xyz".into(),
         })
     }
@@ -212,10 +222,10 @@ fn letters(axes: Axes) -> String {
 ///
 /// # Errors
 /// Another arm.
-pub fn only_lwr(arm: &ArmParameters, set: &str) -> Result<(), Invalid> {
-    if arm.name == arms::LWR_IV.name {
+pub fn only_lwr(arm: &EquippedArm, set: &str) -> Result<(), Invalid> {
+    if is_lwr(arm) {
         return Ok(());
     }
-    let allowed = format!("{} with the set {set}", arms::LWR_IV.name);
-    Err(Invalid::new("--arm", arm.name, allowed))
+    let allowed = format!("{LWR} with the set {set}");
+    Err(Invalid::new("--arm", arm.parameters.name, allowed))
 }

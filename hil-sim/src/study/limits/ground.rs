@@ -1,19 +1,19 @@
 //! What an arm can reach, and where it may start.
 
-use controller_core::arm::ArmParameters;
-use controller_core::joint::{DOF, JointVector, Vector3};
+use controller_core::joint::{DOF, JointState, JointVector, Vector3};
 use controller_core::{Axes, LinkPoint};
 
-use super::case::{CaseLevel, point};
+use super::case::{CaseLevel, is_lwr};
 use super::parameters::{self, Draw, REACH_M};
-use super::truth;
+use crate::arm_points::at_rest;
 use crate::plant::PlantModel;
 use cell::invalid::Invalid;
+use cell::scenario::EquippedArm;
 
 /// An arm as the runs see it.
 pub struct Ground {
     /// Its tables.
-    pub arm: ArmParameters,
+    pub arm: EquippedArm,
     /// Its geometry.
     pub model: PlantModel,
     /// The point that the first level moves.
@@ -34,31 +34,29 @@ const PLACES: usize = 25;
 
 impl Ground {
     /// Of an arm.
-    ///
-    /// # Errors
-    /// It has no point called "flange".
-    pub fn new(arm: &ArmParameters) -> Result<Self, Invalid> {
-        let model = PlantModel::new(arm);
-        let flange = point(arm, "flange")?;
-        let rest = controller_core::joint::JointState {
+    #[must_use]
+    pub fn new(arm: &EquippedArm) -> Self {
+        let table = &arm.parameters;
+        let model = PlantModel::new(table);
+        let rest = JointState {
             q: JointVector::zeros(),
             dq: JointVector::zeros(),
         };
         let place = |link, offset| model.point(&rest, link, &Vector3::from(offset)).0;
         let (base, shoulder) = (place(0, [0.0; 3]), place(1, [0.0; 3]));
         let axis = place(0, [0.0, 0.0, 1.0]) - base;
-        let up = -Vector3::from(arm.gravity).normalize();
+        let up = -Vector3::from(table.gravity).normalize();
         let mut ground = Self {
-            arm: *arm,
+            flange: table.flange_point(),
+            arm: arm.clone(),
             model,
-            flange,
             shoulder,
             axis,
             up,
             reach: 0.0,
         };
         ground.reach = ground.farthest();
-        Ok(ground)
+        ground
     }
 
     /// The farthest flange from some postures, by a walk along one joint after the other in
@@ -81,7 +79,7 @@ impl Ground {
 
     /// The posture with one joint where the flange is farthest.
     fn walked(&self, q: &JointVector<f64>, joint: usize, width: f64) -> JointVector<f64> {
-        let [min, max] = self.arm.links[joint].position_range;
+        let [min, max] = self.arm.parameters.links[joint].position_range;
         let mut best = *q;
         for place in 0..PLACES {
             let share = place as f64 / (PLACES - 1) as f64 - 0.5;
@@ -101,14 +99,14 @@ impl Ground {
     /// Flange from the shoulder \[m\].
     #[must_use]
     pub fn from_shoulder(&self, q: &JointVector<f64>) -> Vector3<f64> {
-        truth::position(&self.model, q, &self.flange) - self.shoulder
+        at_rest(&self.model, q, &self.flange) - self.shoulder
     }
 
     /// Where joints are at these shares of half their ranges from the middle, -1 to 1 \[rad\].
     #[must_use]
     pub fn of_range(&self, shares: &[f64; DOF]) -> JointVector<f64> {
         JointVector::from_fn(|i, _| {
-            let [min, max] = self.arm.links[i].position_range;
+            let [min, max] = self.arm.parameters.links[i].position_range;
             (min + max) / 2.0 + shares[i] * (max - min) / 2.0
         })
     }
@@ -128,7 +126,7 @@ impl Ground {
     /// A posture to start from \[rad\].
     pub fn start(&self, draw: &mut Draw) -> JointVector<f64> {
         use parameters::{START_1, START_2, START_3, START_4, START_5, START_6, START_7};
-        if self.arm.name == arms::LWR_IV.name {
+        if is_lwr(&self.arm) {
             let joints = [
                 START_1, START_2, START_3, START_4, START_5, START_6, START_7,
             ];
@@ -162,7 +160,7 @@ mod tests {
     /// Upper arm, forearm and flange of the LWR in a line.
     #[test]
     fn the_reach_of_a_straight_arm_is_the_sum_of_its_parts() {
-        let ground = Ground::new(&arms::LWR_IV).unwrap();
+        let ground = Ground::new(&EquippedArm::of(&arms::LWR_IV));
         assert!((ground.reach - REACH_M).abs() < 1e-9, "{}", ground.reach);
         assert!((ground.shoulder - Vector3::new(0.0, 0.0, 0.3105)).norm() < 1e-12);
         assert!((ground.axis - ground.up).norm() < 1e-12);
@@ -172,7 +170,7 @@ mod tests {
     fn no_random_posture_reaches_farther() {
         let mut draw = Draw::new(1, 0);
         for arm in arms::ALL {
-            let ground = Ground::new(arm).expect(arm.name);
+            let ground = Ground::new(&EquippedArm::of(arm));
             for _ in 0..2000 {
                 let q = ground.of_range(&core::array::from_fn(|_| draw.within(-1.0, 1.0)));
                 // The search ends within a step of 0.2^3 / 24 of a range.

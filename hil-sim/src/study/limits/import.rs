@@ -8,8 +8,7 @@ use cell::invalid::Invalid;
 use cell::names::Named;
 use cell::ranges::{CYCLE_MS, LEVELS, Range};
 use cell::reader;
-use cell::scenario::Push;
-use controller_core::arm::ArmParameters;
+use cell::scenario::{EquippedArm, Push};
 use controller_core::joint::{DOF, JointVector, Vector3};
 use controller_core::task::Tracked;
 use controller_core::task::orientation::Quaternion;
@@ -19,6 +18,8 @@ use serde::Deserialize;
 
 use super::case::{Case, CaseLevel, PLANT_SEED};
 use super::set::Set;
+use super::truth;
+use crate::plant::PlantModel;
 
 /// Most bytes of a file, of what is in it, and of a line.
 const MOST_PACKED: u64 = 64 << 20;
@@ -74,7 +75,7 @@ enum Kind {
 }
 
 impl Head {
-    fn validate(&self) -> Result<(), Invalid> {
+    fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
         CYCLE_MS.check("cycle_s in ms", self.cycle_s * 1e3)?;
         FACTOR.check("stiffness_factor", self.stiffness_factor)?;
         for angle in self.start.iter().chain(&self.posture) {
@@ -85,7 +86,7 @@ impl Head {
             return Err(Invalid::new("levels", given, LEVELS));
         }
         for (index, push) in self.contacts.iter().enumerate() {
-            push.validate()
+            push.validate(arm)
                 .map_err(|error| error.in_list("contacts", index))?;
         }
         Ok(())
@@ -93,7 +94,7 @@ impl Head {
 }
 
 impl HeadLevel {
-    fn level(&self, arm: &ArmParameters) -> Result<CaseLevel, Invalid> {
+    fn level(&self, arm: &EquippedArm) -> Result<CaseLevel, Invalid> {
         let Some(axes) = Axes::from_name(&self.axes) else {
             let allowed = "letters of xyz in this order";
             return Err(Invalid::new("axes", &self.axes, allowed));
@@ -101,7 +102,7 @@ impl HeadLevel {
         match self.kind {
             Kind::Position => CaseLevel::position(arm, &self.point, axes),
             Kind::Orientation if self.point == "flange" && axes == Axes::XYZ => {
-                CaseLevel::orientation()
+                CaseLevel::orientation(arm)
             }
             Kind::Orientation => {
                 let given = format!("orientation of {} about {}", self.point, self.axes);
@@ -139,7 +140,7 @@ pub fn count(folder: &Path, set: Set) -> Result<usize, Invalid> {
 ///
 /// # Errors
 /// Names file, line, value and what is allowed.
-pub fn case(path: &Path, arm: &ArmParameters, set: Set, number: usize) -> Result<Case, Invalid> {
+pub fn case(path: &Path, arm: &EquippedArm, set: Set, number: usize) -> Result<Case, Invalid> {
     let file = File::open(path).map_err(|error| {
         let allowed = format!("a readable file ({error})");
         Invalid::new("run", path.display(), allowed)
@@ -155,7 +156,7 @@ pub fn case(path: &Path, arm: &ArmParameters, set: Set, number: usize) -> Result
     })
 }
 
-fn read(text: impl Read, arm: &ArmParameters) -> Result<Case, Invalid> {
+fn read(text: impl Read, arm: &EquippedArm) -> Result<Case, Invalid> {
     let mut lines = Lines {
         text: BufReader::new(text),
         number: 0,
@@ -167,7 +168,7 @@ fn read(text: impl Read, arm: &ArmParameters) -> Result<Case, Invalid> {
     let Some(json) = first.strip_prefix("# ") else {
         return Err(Invalid::new("line 1", first, "'# ' and JSON"));
     };
-    let head: Head = reader::json(json, Head::validate)?;
+    let head: Head = reader::json(json, |head: &Head| head.validate(arm))?;
     let mut levels = Vec::new();
     for (index, level) in head.levels.iter().enumerate() {
         let place = |error: Invalid| error.in_list("levels", index).within("line 1");
@@ -179,9 +180,12 @@ fn read(text: impl Read, arm: &ArmParameters) -> Result<Case, Invalid> {
     case.stiffness_factor = head.stiffness_factor;
     case.pushes = head.contacts;
     case.back_at_s = head.back_at_s;
+    let model = PlantModel::new(&arm.parameters);
+    let rest = |level: &CaseLevel| truth::rest(&model, &case.start, &level.task);
+    let rests: Vec<_> = case.levels.iter().map(rest).collect();
     let mut cycles = 0;
     while let Some(row) = lines.next()? {
-        let targets = row_targets(row, &case, cycles);
+        let targets = row_targets(row, &case, &rests, cycles);
         let targets = targets.map_err(|error| error.within(format_args!("line {}", cycles + 2)))?;
         case.targets.extend(targets);
         cycles += 1;
@@ -191,8 +195,13 @@ fn read(text: impl Read, arm: &ArmParameters) -> Result<Case, Invalid> {
     Ok(case)
 }
 
-/// The targets of a row.
-fn row_targets(row: &str, case: &Case, cycle: usize) -> Result<Vec<Target<f64>>, Invalid> {
+/// The targets of a row; on axes that a level does not control they are where it is at `rests`.
+fn row_targets(
+    row: &str,
+    case: &Case,
+    rests: &[Target<f64>],
+    cycle: usize,
+) -> Result<Vec<Target<f64>>, Invalid> {
     let turns = |level: &CaseLevel| matches!(level.task.tracked, Tracked::Orientation(_));
     let width = |level: &CaseLevel| if turns(level) { 10 } else { 9 };
     let wanted = 1 + case.levels.iter().map(width).sum::<usize>();
@@ -219,17 +228,28 @@ fn row_targets(row: &str, case: &Case, cycle: usize) -> Result<Vec<Target<f64>>,
     }
     let mut at = 1;
     let mut targets = Vec::with_capacity(case.levels.len());
-    for level in &case.levels {
+    for (level, rest) in case.levels.iter().zip(rests) {
         let place = at;
         at += width(level);
         let vector = |from: usize| Vector3::from_column_slice(&numbers[from..from + 3]);
-        targets.push(match turns(level) {
-            false => Target::Position {
-                x: vector(place),
-                dx: vector(place + 3),
-                ddx: vector(place + 6),
-            },
-            true => Target::Orientation {
+        targets.push(match rest {
+            Target::Position { x, .. } => {
+                let wanted = |from: usize, rest: &Vector3<f64>| {
+                    let wanted = vector(from);
+                    let controlled = |axis| level.task.axes.contains(axis);
+                    Vector3::from_fn(|axis, _| match controlled(axis) {
+                        true => wanted[axis],
+                        false => rest[axis],
+                    })
+                };
+                let still = Vector3::zeros();
+                Target::Position {
+                    x: wanted(place, x),
+                    dx: wanted(place + 3, &still),
+                    ddx: wanted(place + 6, &still),
+                }
+            }
+            _ => Target::Orientation {
                 q: Quaternion::from_column_slice(&numbers[place..place + 4]),
                 w: vector(place + 4),
                 dw: vector(place + 7),

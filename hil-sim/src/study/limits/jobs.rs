@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cell::invalid::Invalid;
 use cell::names::PlantKind;
-use controller_core::arm::ArmParameters;
+use cell::scenario::EquippedArm;
 use serde::Serialize;
 
 use super::case::Case;
@@ -21,7 +21,7 @@ use crate::interrupt;
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The arm.
-    pub arm: &'static ArmParameters,
+    pub arm: EquippedArm,
     /// As it is simulated.
     pub plant: PlantKind,
     /// Of the controller.
@@ -72,7 +72,7 @@ impl Plan {
         &self,
         progress: impl Fn(usize, usize) + Sync,
     ) -> Result<Option<Vec<SetOutcome>>, Invalid> {
-        let ground = Ground::new(self.arm)?;
+        let ground = Ground::new(&self.arm);
         let jobs = self.listed()?;
         let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let results: Mutex<Vec<Option<Result<Outcome, Invalid>>>> =
@@ -134,7 +134,7 @@ impl Plan {
             None => job.set.case(ground, job.number),
             Some(folder) => {
                 let path = import::path(folder, job.set, job.number);
-                import::case(&path, self.arm, job.set, job.number)
+                import::case(&path, &self.arm, job.set, job.number)
             }
         }
     }

@@ -32,15 +32,16 @@ pub fn case(number: usize) -> Result<Case, Invalid> {
 
 fn of_scenario(scenario: &Scenario) -> Case {
     let start = scenario.start();
+    let arm = scenario.arm();
     let origins = origins(scenario, &start);
     let level = |level: &LevelSpec| CaseLevel {
-        task: level.task(),
+        task: level.task(&arm),
         label: level.label(),
     };
     let levels = scenario.levels.iter().map(level).collect();
     let case = Case {
         cycle_s: scenario.cycle_s(),
-        ..Case::at_rest(scenario.name.clone(), scenario.arm(), start, levels)
+        ..Case::at_rest(scenario.name.clone(), &arm, start, levels)
     };
     let case = case.following(scenario.duration_s, |t_s| {
         let reference = scenario.reference(&origins, &start, t_s);

@@ -192,7 +192,7 @@ impl<'a> Tally<'a> {
         let power = data.projection.power.to_f64();
         let [least, greatest] = outcome.null_power_w;
         outcome.null_power_w = [least.min(power), greatest.max(power)];
-        add_joints(outcome, cycle, &self.case.arm, &self.case.start);
+        add_joints(outcome, cycle, &self.case.arm.parameters, &self.case.start);
         if let Some(last) = self.last_torque.replace(*cycle.torque) {
             let change = (cycle.torque - last).abs();
             let (joint, nm) = change.argmax();

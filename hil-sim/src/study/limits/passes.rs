@@ -9,6 +9,7 @@ use super::case::{Case, CaseLevel};
 use super::ground::Ground;
 use super::parameters::{BESIDE, BEYOND, Draw, LINE, OBLIQUE, RAMP_S, SPEED};
 use super::truth;
+use crate::arm_points::at_rest;
 
 /// Seed of the first pass.
 const SEED: u64 = 7000;
@@ -67,13 +68,14 @@ pub fn pass(ground: &Ground, number: usize) -> Result<Case, Invalid> {
     let mut ways = (0..TRIES).filter_map(|_| way(ground, kind, &mut draw));
     let Some(Way { start, by }) = ways.next() else {
         let given = format!("no start for {name} in {TRIES}");
-        return Err(Invalid::new("arm", given, "one that reaches farther").within(ground.arm.name));
+        return Err(Invalid::new("arm", given, "one that reaches farther")
+            .within(ground.arm.parameters.name));
     };
     let mut levels = vec![ground.flange_level()?];
     match number / 4 % 3 {
         0 => {}
         1 => levels.push(ground.wrist_level()?),
-        _ => levels.push(CaseLevel::orientation()?),
+        _ => levels.push(CaseLevel::orientation(&ground.arm)?),
     }
     let stroke = Stroke {
         from_s: BEFORE_S,
@@ -84,7 +86,7 @@ pub fn pass(ground: &Ground, number: usize) -> Result<Case, Invalid> {
         .iter()
         .map(|level| truth::rest(&ground.model, &start, &level.task))
         .collect();
-    let from = truth::position(&ground.model, &start, &ground.flange);
+    let from = at_rest(&ground.model, &start, &ground.flange);
     let case = Case::at_rest(name, &ground.arm, start, levels);
     let case = case.following(stroke.end_s() + AFTER_S, |t_s| {
         let [b, db, ddb] = stroke.share(t_s);

@@ -9,7 +9,7 @@ use controller_core::{LinkPoint, Target};
 use super::case::{Case, point};
 use super::ground::Ground;
 use super::parameters::{Draw, Parameter, RANDOM_GOAL, RANDOM_POSTURE, RANDOM_START, RANDOM_TIME};
-use super::truth;
+use crate::arm_points::at_rest;
 
 /// Seed of the first motion.
 const SEED: u64 = 1000;
@@ -46,7 +46,7 @@ pub fn motion(ground: &Ground, number: usize) -> Result<Case, Invalid> {
         levels.push(ground.wrist_level()?);
         points.push(point(&ground.arm, "wrist")?);
     }
-    let place = |point: &LinkPoint| goals.map(|q| truth::position(&ground.model, &q, point));
+    let place = |point: &LinkPoint| goals.map(|q| at_rest(&ground.model, &q, point));
     let ways: Vec<_> = points.iter().map(place).collect();
     let case = Case::at_rest(format!("random-{number:03}"), &ground.arm, start, levels);
     let case = case.following(DURATION_S, |t_s| {

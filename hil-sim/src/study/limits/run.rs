@@ -5,13 +5,13 @@ use cell::names::{Named, PlantKind};
 use controller_core::joint::{JointState, JointVector};
 use controller_core::ranges::POSTURE_JUMP;
 use controller_core::real::Real;
-use controller_core::{Controller, LinkPoint, Measurement, Reference, State};
+use controller_core::{Controller, Measurement, Reference, State};
 
-use super::case::{Case, point};
+use super::case::Case;
 use super::outcome::{Cycle, Outcome, Tally};
-use crate::plant::{Plant, PlantModel};
+use crate::contact::PlacedPush;
+use crate::plant::Plant;
 use crate::sample::UnsafeMotion;
-use cell::scenario::Push;
 
 /// Which law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,17 +67,19 @@ pub fn run(case: &Case, conditions: &Conditions) -> Result<Outcome, Invalid> {
 }
 
 fn closed_loop<T: Real>(case: &Case, conditions: &Conditions) -> Result<Outcome, Invalid> {
-    let config = case.config()?;
+    let (arm, config) = (&case.arm.parameters, case.config()?);
     let controller = match conditions.law {
-        Law::Exact => Controller::<T>::exact(&case.arm, &config),
-        Law::WithinLimits => Controller::<T>::new(&case.arm, &config),
+        Law::Exact => Controller::<T>::exact(arm, &config),
+        Law::WithinLimits => Controller::<T>::new(arm, &config),
     };
     let controller = controller.map_err(|error| Invalid::line(error).within(&case.name))?;
-    let pushes = Pushes::new(case)?;
-    let speed_limit = JointVector::from_fn(|i, _| case.arm.links[i].speed_limit);
+    let pushes = case.pushes.iter().cloned();
+    let pushes: Vec<_> = pushes
+        .map(|push| PlacedPush::new(push, &case.arm))
+        .collect();
     let mut plant = Plant::new(
         conditions.plant,
-        &case.arm,
+        arm,
         case.start,
         case.cycle_s,
         case.plant_seed,
@@ -90,7 +92,7 @@ fn closed_loop<T: Real>(case: &Case, conditions: &Conditions) -> Result<Outcome,
     let mut tally = Tally::new(case);
     for number in 0..case.cycles() {
         let truth = *plant.state();
-        if let Some(motion) = UnsafeMotion::of(&truth, &speed_limit) {
+        if let Some(motion) = UnsafeMotion::of(&truth, arm) {
             return Ok(tally.finish(Some(stopped(number, case, &motion))));
         }
         let JointState { q, dq } = plant.measure();
@@ -116,7 +118,8 @@ fn closed_loop<T: Real>(case: &Case, conditions: &Conditions) -> Result<Outcome,
         tally.add(&cycle, plant.model(), state.data());
         let t_s = number as f64 * case.cycle_s;
         plant.advance(t_s, &torque, |t, model, state| {
-            pushes.torque(t, model, state)
+            let torques = pushes.iter().map(|push| push.torque(t, model, state));
+            torques.fold(JointVector::zeros(), |sum, torque| sum + torque)
         });
     }
     Ok(tally.finish(None))
@@ -134,29 +137,4 @@ fn reference<T: Real>(case: &Case, number: usize) -> Reference<T> {
         *target = wanted.cast();
     }
     reference
-}
-
-/// Pushes and where they act.
-struct Pushes<'a>(Vec<(&'a Push, LinkPoint)>);
-
-impl<'a> Pushes<'a> {
-    fn new(case: &'a Case) -> Result<Self, Invalid> {
-        let place = |push: &'a Push| match &push.point {
-            cell::scenario::PointSpec::Name(name) => Ok((push, point(&case.arm, name)?)),
-            on_link => Ok((push, on_link.resolve())),
-        };
-        Ok(Self(
-            case.pushes.iter().map(place).collect::<Result<_, _>>()?,
-        ))
-    }
-
-    /// Joint torque J^T F \[Nm\].
-    fn torque(&self, t_s: f64, model: &PlantModel, state: &JointState<f64>) -> JointVector<f64> {
-        let mut torque = JointVector::zeros();
-        for (push, LinkPoint { link, offset }) in &self.0 {
-            let force = push.force(t_s);
-            torque += model.point_torque(&state.q, link.number(), &(*offset).into(), &force);
-        }
-        torque
-    }
 }

@@ -49,11 +49,11 @@ pub fn jumps(ground: &Ground) -> Result<Case, Invalid> {
         period_s: 5.0,
         growth_s: 2.0,
     };
-    let mut arm = ground.arm;
-    for link in &mut arm.links {
+    let mut arm = ground.arm.clone();
+    for link in &mut arm.parameters.links {
         link.torque_limit *= TORQUE;
     }
-    if let Some(limits) = &mut arm.limits {
+    if let Some(limits) = &mut arm.parameters.limits {
         limits.acceleration = limits.acceleration.map(|most| most * ACCELERATION);
     }
     let case = Case::at_rest("jumps-of-level-2".into(), &arm, start, levels);

@@ -1,42 +1,18 @@
 //! Where levels really are, by the plant's own geometry.
 
-use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
-use controller_core::task::Tracked;
-use controller_core::task::orientation::{self, Quaternion};
-use controller_core::{LinkPoint, Target, Task};
+use controller_core::joint::JointVector;
+use controller_core::task::{Tracked, orientation};
+use controller_core::{Target, Task};
 
+use crate::arm_points::{at_rest, orientation};
 use crate::plant::PlantModel;
-
-/// Position \[m\] of a point of the arm in the posture `q` \[rad\], base-plate frame.
-#[must_use]
-pub fn position(plant: &PlantModel, q: &JointVector<f64>, point: &LinkPoint) -> Vector3<f64> {
-    let state = JointState {
-        q: *q,
-        dq: JointVector::zeros(),
-    };
-    let (x, _) = plant.point(&state, point.link.number(), &point.offset.into());
-    x
-}
-
-/// Orientation of the frame of `link`, 1 to 7, from the ends of its axes.
-#[must_use]
-pub fn orientation(plant: &PlantModel, q: &JointVector<f64>, link: usize) -> Quaternion<f64> {
-    let state = JointState {
-        q: *q,
-        dq: JointVector::zeros(),
-    };
-    let place = |offset: Vector3<f64>| plant.point(&state, link, &offset).0;
-    let origin = place(Vector3::zeros());
-    let axis = |index| place(Vector3::from_fn(|i, _| f64::from(i == index))) - origin;
-    orientation::of_rotation(&Matrix3::from_columns(&[axis(0), axis(1), axis(2)]))
-}
 
 /// At rest where the level is in the posture `q` \[rad\].
 #[must_use]
 pub fn rest(plant: &PlantModel, q: &JointVector<f64>, task: &Task) -> Target<f64> {
     match &task.tracked {
-        Tracked::Position(point) => Target::position(position(plant, q, point)),
-        Tracked::Orientation(link) => Target::orientation(orientation(plant, q, link.number())),
+        Tracked::Position(point) => Target::position(at_rest(plant, q, point)),
+        Tracked::Orientation(frame) => Target::orientation(orientation(plant, q, frame)),
     }
 }
 
@@ -50,9 +26,9 @@ pub fn error(
     target: &Target<f64>,
 ) -> Option<f64> {
     let off = match (&task.tracked, target) {
-        (Tracked::Position(point), Target::Position { x, .. }) => x - position(plant, q, point),
-        (Tracked::Orientation(link), Target::Orientation { q: wanted, .. }) => {
-            let actual = orientation(plant, q, link.number());
+        (Tracked::Position(point), Target::Position { x, .. }) => x - at_rest(plant, q, point),
+        (Tracked::Orientation(frame), Target::Orientation { q: wanted, .. }) => {
+            let actual = orientation(plant, q, frame);
             orientation::rotation_vector(&orientation::chord(wanted, &actual))
         }
         _ => return None,

@@ -13,7 +13,7 @@ use super::parameters::{
     Draw, WRIST_1, WRIST_2, WRIST_3, WRIST_4, WRIST_4_MOVE, WRIST_5, WRIST_5_OFF, WRIST_6, WRIST_7,
     WRIST_TIME,
 };
-use super::truth;
+use crate::arm_points::{at_rest, orientation as orientation_at};
 
 /// Seed of the first pass.
 const SEED: u64 = 9000;
@@ -49,10 +49,10 @@ pub fn pass(ground: &Ground, number: usize) -> Result<Case, Invalid> {
     };
 
     let position_first = number % 2 == 0;
-    let mut levels = vec![ground.flange_level()?, CaseLevel::orientation()?];
-    let [from, to] = [start, end].map(|q| truth::position(&ground.model, &q, &ground.flange));
-    let [turned_from, turned_to] = [start, end]
-        .map(|q| truth::orientation(&ground.model, &q, controller_core::Link::L7.number()));
+    let mut levels = vec![ground.flange_level()?, CaseLevel::orientation(&ground.arm)?];
+    let [from, to] = [start, end].map(|q| at_rest(&ground.model, &q, &ground.flange));
+    let frame = ground.arm.parameters.flange_frame();
+    let [turned_from, turned_to] = [start, end].map(|q| orientation_at(&ground.model, &q, &frame));
     let by = to - from;
     let turn = orientation::rotation_vector(&orientation::chord(&turned_to, &turned_from));
     if !position_first {
