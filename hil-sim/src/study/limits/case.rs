@@ -5,9 +5,7 @@ use cell::scenario::{EquippedArm, Push, Scenario};
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::{
-    Axes, ControllerConfig, LinkPoint, Reference, Target, Task, TaskGains, TaskSet,
-};
+use controller_core::{Axes, ControllerConfig, LinkPoint, Target, Task, TaskGains, TaskSet};
 
 /// The scenario whose gains all runs have.
 const GAINS: &str = "two-level";
@@ -112,17 +110,6 @@ impl Case {
     pub fn targets(&self, cycle: usize) -> &[Target<f64>] {
         let levels = self.levels.len();
         &self.targets[cycle * levels..(cycle + 1) * levels]
-    }
-
-    /// What the controller is to follow in a cycle.
-    #[must_use]
-    pub fn reference(&self, cycle: usize) -> Reference<f64> {
-        let mut reference = Reference::hold(self.levels.len(), self.posture);
-        let targets = reference.targets_mut().iter_mut();
-        for (target, wanted) in targets.zip(self.targets(cycle)) {
-            *target = *wanted;
-        }
-        reference
     }
 
     /// The controller of this run: gains of the two-level experiment; an arm that has others of

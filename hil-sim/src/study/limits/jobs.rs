@@ -1,8 +1,8 @@
 //! All runs of a study, on several processors.
 
 use std::path::PathBuf;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use cell::invalid::Invalid;
 use cell::names::PlantKind;
@@ -78,24 +78,20 @@ impl Plan {
         let results: Mutex<Vec<Option<Result<Outcome, Invalid>>>> =
             Mutex::new(vec![None; jobs.len()]);
         let work = || {
-            while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(job) = jobs.get(index) else { return };
                 if interrupt::stop().is_some() {
                     return;
                 }
-                let result = self
-                    .case(&ground, job)
-                    .and_then(|case| self.made(&case, job));
-                let failed = result.is_err();
-                let place = jobs.iter().position(|other| std::ptr::eq(other, job));
-                let mut results = results
-                    .lock()
-                    .unwrap_or_else(|poisoned| poisoned.into_inner());
-                results[place.unwrap_or(0)] = Some(result);
-                drop(results);
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
-                if failed {
+                let case = self.case(&ground, job);
+                let result = case.and_then(|case| self.made(&case, job));
+                if result.is_err() {
                     next.store(jobs.len(), Ordering::Relaxed);
                 }
+                let results = results.lock();
+                results.unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
             }
         };
         std::thread::scope(|scope| {
@@ -103,9 +99,7 @@ impl Plan {
                 scope.spawn(work);
             }
         });
-        let results = results
-            .into_inner()
-            .unwrap_or_else(|poisoned| poisoned.into_inner());
+        let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
         if interrupt::stop().is_some() {
             return Ok(None);
         }

@@ -1,6 +1,7 @@
 //! Scenarios near and beyond limits, one by one: files that `run` takes as well.
 
 use cell::invalid::Invalid;
+use cell::ranges::Range;
 use cell::scenario::{LevelSpec, NEAR_LIMITS, ReferenceSpec, Scenario, Stroke};
 
 use super::case::{Case, CaseLevel};
@@ -18,15 +19,16 @@ pub fn count() -> usize {
 /// The scenario `number` (from 0) without contacts.
 ///
 /// # Errors
-/// None, as they are built in.
+/// There are not so many.
 pub fn case(number: usize) -> Result<Case, Invalid> {
-    let scenario = match FAR.get(number) {
-        Some(name) => Scenario::find(name)?,
-        None => {
-            let (name, text) = NEAR_LIMITS[(number - FAR.len()) % NEAR_LIMITS.len()];
-            Scenario::parse(text).map_err(|error| error.within(name))?
-        }
+    if let Some(name) = FAR.get(number) {
+        return Ok(of_scenario(&Scenario::find(name)?));
+    }
+    let Some((name, text)) = NEAR_LIMITS.get(number - FAR.len()) else {
+        let last = count() - 1;
+        return Err(Invalid::new("run", number, Range::new(0, last)));
     };
+    let scenario = Scenario::parse(text).map_err(|error| error.within(name))?;
     Ok(of_scenario(&scenario))
 }
 

@@ -62,7 +62,7 @@ type Count = fn(&Outcome) -> bool;
 /// Runs that are counted.
 const COUNTS: [(&str, Count); 5] = [
     ("runs stopped", |run| run.stop.is_some()),
-    ("runs with a step above", |run| run.step.nm > SMALL_STEP_NM),
+    ("runs with a large step", |run| run.step.nm > SMALL_STEP_NM),
     ("runs beyond a range", |run| run.beyond_deg > 0.0),
     ("runs above a speed limit", |run| run.speed_share > 1.0),
     ("runs with a torque cut", |run| run.limited.saturated > 0),
@@ -126,11 +126,7 @@ pub fn table(of_set: &SetOutcome, criteria: &[Criterion]) -> String {
             true => String::new(),
             false => runs.iter().filter(|run| is(run)).count().to_string(),
         };
-        let name = match name.strip_suffix("above") {
-            Some(_) => format!("{name} {SMALL_STEP_NM} Nm"),
-            None => name.to_string(),
-        };
-        row(&name, laws.map(counted));
+        row(name, laws.map(counted));
     }
     for (name, cycles) in CYCLES {
         let share = |runs: &Vec<Outcome>| {

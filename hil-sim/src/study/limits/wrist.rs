@@ -48,7 +48,7 @@ pub fn pass(ground: &Ground, number: usize) -> Result<Case, Invalid> {
         hold_s: HOLD_S,
     };
 
-    let position_first = number % 2 == 0;
+    let position_first = number.is_multiple_of(2);
     let mut levels = vec![ground.flange_level()?, CaseLevel::orientation(&ground.arm)?];
     let [from, to] = [start, end].map(|q| at_rest(&ground.model, &q, &ground.flange));
     let frame = ground.arm.parameters.flange_frame();
