@@ -6,12 +6,14 @@ mod arm;
 mod contact;
 mod hand;
 mod level;
+mod limits;
 mod metric;
 mod near;
 mod point;
 mod push;
 mod reference;
 mod session;
+mod stroke;
 
 use std::path::Path;
 
@@ -32,12 +34,14 @@ pub use arm::{EquippedArm, Mount, TOOL_POINT, ToolSpec};
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec, TaskSpec};
+pub use limits::NEAR_LIMITS;
 pub use metric::{Metric, Unit};
 pub use near::{JointLimitsSpec, LawSpec, LevelLimitsSpec};
 pub use point::PointSpec;
 pub use push::Push;
 pub use reference::{AxisOf, ReferenceSpec};
 pub use session::ScenarioSource;
+pub use stroke::Stroke;
 
 /// The scenarios that come with the program: name and TOML text.
 pub const BUILT_IN: &[(&str, &str)] = &[

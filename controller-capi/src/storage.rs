@@ -3,7 +3,7 @@
 /// Storage of a controller in words of 8 bytes.
 pub const STRATUM_CONTROLLER_WORDS: usize = 900;
 /// Storage of a state in words of 8 bytes.
-pub const STRATUM_STATE_WORDS: usize = 1500;
+pub const STRATUM_STATE_WORDS: usize = 1650;
 /// sizeof(StratumController).
 pub const STRATUM_CONTROLLER_SIZE: usize = STRATUM_CONTROLLER_WORDS * 8;
 /// Alignment of a StratumController.

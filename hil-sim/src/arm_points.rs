@@ -47,7 +47,8 @@ fn rest_at(
 }
 
 /// Where a point is in a posture \[rad\], base-plate frame \[m\].
-fn at_rest(plant: &PlantModel, q: &JointVector<f64>, point: &LinkPoint) -> Vector3<f64> {
+#[must_use]
+pub fn at_rest(plant: &PlantModel, q: &JointVector<f64>, point: &LinkPoint) -> Vector3<f64> {
     let state = JointState {
         q: *q,
         dq: JointVector::zeros(),

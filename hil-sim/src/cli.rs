@@ -4,6 +4,7 @@ mod files;
 mod notes;
 mod run;
 mod serve;
+mod study;
 
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -20,6 +21,7 @@ use cell::terminal::{print, tell};
 
 pub use run::RunOptions;
 pub use serve::ServeOptions;
+pub use study::StudyOptions;
 
 /// Hardware-in-the-loop simulation of strict-priority torque control on a
 /// 7-joint arm.
@@ -54,6 +56,8 @@ enum Command {
         #[arg(long, default_value = "out/paper")]
         out: PathBuf,
     },
+    /// Many runs near and beyond limits: what the law keeps in all of them
+    Study(StudyOptions),
     /// Print a built-in scenario as commented TOML
     Scenario {
         /// two-level, case-1, case-2, hand
@@ -68,7 +72,7 @@ enum Command {
 }
 
 /// What the program can be asked for.
-const COMMANDS: &[&str] = &["run", "serve", "paper", "scenario", "explain"];
+const COMMANDS: &[&str] = &["run", "serve", "paper", "study", "scenario", "explain"];
 
 /// Runs the program with the arguments of the process.
 #[must_use]
@@ -82,6 +86,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(options)) => options.run(),
         Some(Command::Serve(options)) => options.run(),
         Some(Command::Paper { out }) => crate::paper::run(&out),
+        Some(Command::Study(options)) => options.run(),
         Some(Command::Scenario { name }) => {
             Scenario::built_in_text(&name).and_then(print).map(|()| 0)
         }

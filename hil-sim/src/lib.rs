@@ -12,7 +12,7 @@
 //! - [`experiment`]: the loop around `controller-core` with one of the laws; [`loopback`]: the
 //!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
 //! - [`output`], [`trace`], [`report`]: the files of a run; [`paper`]: every experiment and
-//!   claim of the paper;
+//!   claim of the paper; [`study`]: many runs near and beyond limits;
 //! - [`serve`]: the robot on a socket or a serial line; [`cli`]: the program.
 
 pub mod after_fault;
@@ -34,5 +34,6 @@ pub mod report;
 pub mod robot;
 pub mod sample;
 pub mod serve;
+pub mod study;
 pub mod summary;
 pub mod trace;

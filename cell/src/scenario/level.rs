@@ -83,7 +83,10 @@ impl LevelSpec {
         }
         if self.reference.is_rotation() == Some(self.task != TaskSpec::Orientation) {
             let (given, allowed) = match self.task {
-                TaskSpec::Position => ("swing", "hold, move, circle, spiral for a position"),
+                TaskSpec::Position => (
+                    "swing",
+                    "hold, move, there-and-back, circle, spiral for a position",
+                ),
                 TaskSpec::Orientation => ("a motion of a point", "hold, swing for an orientation"),
             };
             return Err(Invalid::new("reference", given, allowed));

@@ -6,6 +6,7 @@ use controller_core::task::orientation::{self, Quaternion};
 use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
+use super::stroke::Stroke;
 use crate::invalid::Invalid;
 use crate::ranges::{AXIS_LENGTH, DURATION_S, OFFSET_M, PERIOD_S, RADIUS_M, SWING_DEG};
 
@@ -23,12 +24,32 @@ pub enum ReferenceSpec {
         /// Time of the move \[s\].
         duration_s: f64,
     },
+    /// Straight move, rest at its end, and back.
+    ThereAndBack(ThereAndBack),
     /// A circle that reaches its radius in `growth_s`.
     Circle(Turn),
     /// The same circle, under the name for a radius that grows until the end.
     Spiral(Turn),
     /// An orientation that turns to and fro about an axis.
     Swing(Swing),
+}
+
+/// A straight move, there and back.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ThereAndBack {
+    /// Displacement \[m\] of the far end.
+    pub by_m: [f64; 3],
+    /// When it starts \[s\].
+    #[serde(default)]
+    pub from_s: f64,
+    /// Time of one way \[s\].
+    pub duration_s: f64,
+    /// Time of the ramps of an even speed \[s\]; none: a quintic blend.
+    pub ramp_s: Option<f64>,
+    /// Rest at the far end \[s\].
+    #[serde(default)]
+    pub hold_s: f64,
 }
 
 /// Turning to and fro about an axis.
@@ -98,6 +119,13 @@ impl ReferenceSpec {
                 by_m.iter()
                     .try_for_each(|&x| OFFSET_M.check("by_m", x).map(drop))
             }
+            Self::ThereAndBack(motion) => {
+                motion.stroke().validate()?;
+                motion
+                    .by_m
+                    .iter()
+                    .try_for_each(|&x| OFFSET_M.check("by_m", x).map(drop))
+            }
             Self::Circle(turn) | Self::Spiral(turn) => {
                 RADIUS_M.check("radius_m", turn.radius_m)?;
                 PERIOD_S.check("period_s", turn.period_s)?;
@@ -119,7 +147,9 @@ impl ReferenceSpec {
         match self {
             Self::Hold {} => None,
             Self::Swing(_) => Some(true),
-            Self::Move { .. } | Self::Circle(_) | Self::Spiral(_) => Some(false),
+            Self::Move { .. } | Self::ThereAndBack(_) | Self::Circle(_) | Self::Spiral(_) => {
+                Some(false)
+            }
         }
     }
 
@@ -129,6 +159,7 @@ impl ReferenceSpec {
     pub fn sample(&self, origin: &Target<f64>, t_s: f64) -> Target<f64> {
         match (self.trajectory(), self, origin) {
             (Some(trajectory), _, Target::Position { x, .. }) => trajectory.sample(x, t_s),
+            (_, Self::ThereAndBack(motion), Target::Position { x, .. }) => motion.sample(x, t_s),
             (_, Self::Swing(swing), Target::Orientation { q, .. }) => {
                 swing.rotation(q).sample(q, t_s)
             }
@@ -139,12 +170,35 @@ impl ReferenceSpec {
     /// The motion of a point; none for others and for rest.
     fn trajectory(&self) -> Option<Trajectory<f64>> {
         match self {
-            Self::Hold {} | Self::Swing(_) => None,
+            Self::Hold {} | Self::ThereAndBack(_) | Self::Swing(_) => None,
             Self::Move { by_m, duration_s } => Some(Trajectory::Move {
                 by: (*by_m).into(),
                 duration_s: *duration_s,
             }),
             Self::Circle(turn) | Self::Spiral(turn) => Some(turn.trajectory()),
+        }
+    }
+}
+
+impl ThereAndBack {
+    /// When it goes and comes back.
+    #[must_use]
+    pub fn stroke(&self) -> Stroke {
+        Stroke {
+            from_s: self.from_s,
+            duration_s: self.duration_s,
+            ramp_s: self.ramp_s,
+            hold_s: self.hold_s,
+        }
+    }
+
+    fn sample(&self, origin: &Vector3<f64>, t_s: f64) -> Target<f64> {
+        let by = Vector3::from(self.by_m);
+        let [b, db, ddb] = self.stroke().share(t_s);
+        Target::Position {
+            x: origin + by * b,
+            dx: by * db,
+            ddx: by * ddb,
         }
     }
 }

@@ -17,6 +17,8 @@ pub mod stream {
     pub const TO_CLIENT: u64 = 3;
     /// Faults of the link on the way to the robot.
     pub const TO_ROBOT: u64 = 4;
+    /// Runs of studies.
+    pub const STUDY: u64 = 5;
 }
 
 /// A stream of random numbers.

@@ -130,6 +130,15 @@ fn reference(level: &LevelSpec) -> String {
         ReferenceSpec::Move { by_m, duration_s } => {
             return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
         }
+        ReferenceSpec::ThereAndBack(motion) => {
+            return format!(
+                "by ({}) m and back from {} s on, {} s each way, {} s between",
+                list(&motion.by_m),
+                plain(motion.from_s),
+                plain(motion.duration_s),
+                plain(motion.hold_s)
+            );
+        }
         ReferenceSpec::Swing(swing) => {
             return format!(
                 "swing about ({}){}, {} deg reached in {} s, {} s a swing",
