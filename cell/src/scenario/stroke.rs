@@ -152,6 +152,45 @@ mod tests {
     }
 
     #[test]
+    fn times_that_cannot_be_are_refused() {
+        let [stroke, _] = strokes();
+        assert_eq!(stroke.validate(), Ok(()));
+        for (wrong, text) in [
+            (
+                Stroke {
+                    ramp_s: Some(1.5),
+                    ..stroke
+                },
+                "ramp_s: 1.5; allowed: above 0, at most 1",
+            ),
+            (
+                Stroke {
+                    duration_s: 0.0,
+                    ..stroke
+                },
+                "duration_s: 0; allowed: above 0, at most 3600",
+            ),
+            (
+                Stroke {
+                    hold_s: -1.0,
+                    ..stroke
+                },
+                "hold_s: -1; allowed: 0 to 3600",
+            ),
+            (
+                Stroke {
+                    from_s: f64::NAN,
+                    ..stroke
+                },
+                "from_s: NaN; allowed: 0 to 3600",
+            ),
+        ] {
+            let error = wrong.validate().expect_err(text);
+            assert_eq!(error.to_string(), text);
+        }
+    }
+
+    #[test]
     fn the_speed_between_ramps_is_what_was_asked_for() {
         let stroke = Stroke::at_speed(0.6, 0.3, 0.15);
         assert!(stroke.validate().is_ok());
