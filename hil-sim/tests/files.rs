@@ -122,7 +122,7 @@ fn a_signal_stops_a_run_and_what_there_is_is_written() {
         let (code, stderr) = end(run);
         assert_eq!(code, Some(3), "{name}: {stderr}");
         assert!(
-            stderr.contains("note: trace.csv will have about 1.8 GB"),
+            stderr.contains("note: trace.csv will have about 2.2 GB"),
             "{stderr}"
         );
         let all = ["figures", "report.html", "summary.json", "trace.csv"];

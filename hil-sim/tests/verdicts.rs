@@ -38,10 +38,11 @@ fn run(scenario: &str, options: &str) -> Said {
     }
 }
 
-/// An arm that starts at `start` and holds `task` under a `reference`.
+/// An arm that starts at `start` and holds `task` under a `reference`, by the law that goes on
+/// beyond every limit.
 fn scenario(start: [f64; 7], task: &str, reference: &str, rest: &str) -> String {
     format!(
-        "name = 'own'\nrobot = 'lwr_iv'\nduration_s = 2.0\ncycle_ms = 2.0\nstart_deg = {start:?}\n\
+        "name = 'own'\nrobot = 'lwr_iv'\nlaw = 'exact'\nduration_s = 2.0\ncycle_ms = 2.0\nstart_deg = {start:?}\n\
          [[level]]\ntask = '{task}'\npoint = 'flange'\naxes = 'xyz'\n\
          stiffness = 400.0\ndamping = 40.0\n[level.reference]\n{reference}\n\
          [null_space]\nstiffness = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]\n\
@@ -178,7 +179,7 @@ fn a_fault_is_not_lost_over_the_link() {
     let file = folder.path().join("beyond.toml");
     // A tenth of a turn beyond the reach of joint 1.
     let far = text
-        .replace("name = \"two-level\"", "name = \"beyond\"")
+        .replace("name = \"two-level\"", "name = \"beyond\"\nlaw = \"exact\"")
         .replace("start_deg = [0.0,", "start_deg = [169.0,")
         .replace("radius_m = 0.1", "radius_m = 0.3");
     std::fs::write(&file, far).expect("a file");

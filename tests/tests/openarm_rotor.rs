@@ -48,7 +48,7 @@ fn run(believed: &ArmParameters) -> Figures {
     let motions = [circle(0.05, 4.0)];
     let mut closed =
         ClosedLoop::<f64>::with_arm(&OPENARM_V20_LEFT, &config, posture(START_DEG), &motions);
-    closed.controller = Controller::new(believed, &config).expect("either table");
+    closed.controller = Controller::exact(believed, &config).expect("either table");
     let elbow = OPENARM_V20_LEFT.point("elbow").expect("a point of the arm");
     let push = |t: f64, plant: &PlantModel, state: &JointState<f64>| {
         if (3.0..5.0).contains(&t) {

@@ -22,7 +22,7 @@ fn scenario(axes: &str, first: &str, second: &str) -> Scenario {
         )
     };
     let text = format!(
-        "name = \"swing\"\nrobot = \"lwr_iv\"\nduration_s = 6.0\ncycle_ms = 2.0\n\
+        "name = \"swing\"\nrobot = \"lwr_iv\"\nlaw = \"exact\"\nduration_s = 6.0\ncycle_ms = 2.0\n\
          start_deg = [10.0, 30.0, 5.0, -85.0, 25.0, 50.0, 0.0]\n{}{}\
          [null_space]\nstiffness = [20.0, 20.0, 15.0, 15.0, 3.0, 2.0, 0.2]\n\
          damping = [4.0, 4.0, 3.0, 3.0, 0.4, 0.3, 0.03]\n[observer]\ngain = 50.0\n",

@@ -116,8 +116,9 @@ fn the_trace_holds_what_the_summary_says() {
     let text = String::from_utf8(trace).expect("plain text");
     let mut lines = text.lines();
     let header: Vec<_> = lines.next().expect("header").split(',').collect();
-    // t; joint vectors; position, reference and error of the level's point; flags and mode.
-    assert_eq!(header.len(), 1 + 5 * 7 + 3 + 3 + 2);
+    // t; joint vectors; position, reference and error of the level's point; mode and error; bounds
+    // of the joints and exchanges.
+    assert_eq!(header.len(), 1 + 5 * 7 + 3 + 3 + 2 + 7 + 1);
     let column = |name: &str| {
         header
             .iter()

@@ -10,7 +10,7 @@ use crate::plant::PlantOptions;
 use cell::invalid::Invalid;
 use cell::names::PlantKind::{self, Ideal, Realistic};
 use cell::names::{MeasurementKind, Named, NullStiffness};
-use cell::scenario::{PostureSpec, ReferenceSpec, Scenario};
+use cell::scenario::{LawSpec, PostureSpec, ReferenceSpec, Scenario};
 
 /// Seeds over which figures of the realistic plant are the worst.
 pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
@@ -100,7 +100,11 @@ impl Family {
         Ok(Planned {
             id: self.id(seed),
             experiment: Experiment {
-                scenario: Scenario::find(self.scenario)?,
+                // Of the paper: it knows no limits.
+                scenario: Scenario {
+                    law: LawSpec::Exact,
+                    ..Scenario::find(self.scenario)?
+                },
                 plant: self.plant,
                 contacts: self.contacts,
                 controller: self.controller,
