@@ -78,9 +78,12 @@ fn measure() -> Result<Figures, Trouble> {
     }
 
     let mut figures = Figures::parse(&said)?;
-    let graph = CallGraph::of(&bench)?;
+    let unbound = CallGraph::of(&bench)?;
     for controller in &mut figures.controllers {
         let precision = &controller.precision;
+        let graph = unbound
+            .clone()
+            .with_laws_of(&format!("build_{precision}"))?;
         let cycle = graph.below(&format!("cycle_{precision}"))?;
         let init = graph.below(&format!("build_{precision}"))?;
         if controller.experiment == EXPLAINED {
