@@ -20,9 +20,24 @@ use cases::{Case, Input, levels, levels_of, states};
 use controller_core::arm::ArmParameters;
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::{self, Data};
+use controller_core::fault::Status;
 use controller_core::real::Real;
 use controller_core::resolver::ResolverState;
 use controller_core::{Controller, State, Target};
+
+/// What decides how long a cycle is: whether a level is released, and the pivots of the
+/// projection.
+fn path(status: &Status) -> String {
+    let pivots = match status.pivots {
+        0 => "idle".into(),
+        pivots => format!("pivots-{pivots}"),
+    };
+    match (status.fault, status.released.any()) {
+        (Some(_), _) => "fault".into(),
+        (None, false) => pivots,
+        (None, true) => format!("released-{pivots}"),
+    }
+}
 
 /// Whole cycles: each state is preceded by one that is not counted apart, so that
 /// the observer runs. A cycle must not end in a fault: that is another path.
@@ -44,12 +59,7 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
             black_box(&measurement),
             black_box(&reference),
         );
-        let kind = if step.status.fault.is_none() {
-            input.kind
-        } else {
-            "fault"
-        };
-        println!("{} {kind}", case.name);
+        println!("{} {}", case.name, path(&step.status));
         black_box(step);
     }
 }

@@ -143,7 +143,7 @@ impl<T: Real> Resolver<T> {
             return Err(ConfigError::ResolverGain { value: gain, bound });
         }
         let damping = T::from_f64(2.0 / cycle_s);
-        let mut levels = Levels::new(tasks, &arm);
+        let mut levels = Levels::new(tasks, &arm, false);
         levels.set_gains(damping * T::from_f64(gain), damping);
         Ok(Self {
             levels,

@@ -8,6 +8,7 @@ use core::hint::black_box;
 use controller_core::cycle::record::Recorder;
 use controller_core::cycle::stages::{Run, STAGE_COUNT};
 use controller_core::cycle::{Data, Input};
+use controller_core::ranges::PIVOTS;
 use controller_core::real::Real;
 use controller_core::{Controller, Measurement, Reference, State, Step};
 
@@ -32,6 +33,8 @@ pub struct Extremes {
     pub max: u32,
     /// Index of the first input with the largest.
     pub at: u32,
+    /// How many inputs there were.
+    pub inputs: u32,
 }
 
 impl Extremes {
@@ -39,9 +42,11 @@ impl Extremes {
         min: u32::MAX,
         max: 0,
         at: 0,
+        inputs: 0,
     };
 
     fn add(&mut self, count: u32, index: u32) {
+        self.inputs += 1;
         self.min = self.min.min(count);
         if count > self.max {
             self.max = count;
@@ -50,19 +55,25 @@ impl Extremes {
     }
 }
 
+/// Numbers of pivots that a cycle can take.
+pub const PIVOT_COUNTS: usize = PIVOTS as usize + 1;
+
 /// What all inputs together gave.
 #[derive(Clone, Copy, Debug)]
 pub struct Survey {
     /// Full cycle: checks, all stages and record.
     pub cycle: Extremes,
+    /// The same by what decides on its path: whether a level is released, and the pivots of the
+    /// projection.
+    pub paths: [[Extremes; PIVOT_COUNTS]; 2],
     /// The stages alone, in the order of [`Controller::STAGES`].
     pub stages: [Extremes; STAGE_COUNT],
-    /// Cycles with a fault, with a torque that was cut, with a row not resolved.
+    /// Cycles with a fault, with a torque that was cut, with a level released.
     pub faults: u32,
     /// See `faults`.
     pub saturated: u32,
     /// See `faults`.
-    pub deficient: u32,
+    pub released: u32,
     /// FNV-1a of all torques: equal where all bits are.
     pub checksum: u64,
 }
@@ -121,10 +132,11 @@ pub fn survey<T: Number>(
     let empty = overhead(clock);
     let mut survey = Survey {
         cycle: Extremes::NONE,
+        paths: [[Extremes::NONE; PIVOT_COUNTS]; 2],
         stages: [Extremes::NONE; STAGE_COUNT],
         faults: 0,
         saturated: 0,
-        deficient: 0,
+        released: 0,
         checksum: 0xcbf2_9ce4_8422_2325,
     };
     // The first cycle of all only takes the momentum.
@@ -149,11 +161,17 @@ pub fn survey<T: Number>(
         );
         let step = black_box(&step);
         let count = clock.instructions(clock.ticks().wrapping_sub(start));
-        survey.cycle.add(count.saturating_sub(empty), index);
+        let count = count.saturating_sub(empty);
+        survey.cycle.add(count, index);
+        let (released, pivots) = (step.status.released.any(), step.status.pivots);
+        let paths = survey.paths.get_mut(usize::from(released));
+        if let Some(path) = paths.and_then(|paths| paths.get_mut(usize::from(pivots))) {
+            path.add(count, index);
+        }
 
         survey.faults += u32::from(step.status.fault.is_some());
         survey.saturated += u32::from(step.status.saturated.any());
-        survey.deficient += u32::from(step.status.rank.any());
+        survey.released += u32::from(released);
         for byte in step.torque.iter().flat_map(|x| x.pattern().to_le_bytes()) {
             survey.checksum = (survey.checksum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }

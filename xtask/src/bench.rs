@@ -78,9 +78,12 @@ fn measure() -> Result<Figures, Trouble> {
     }
 
     let mut figures = Figures::parse(&said)?;
-    let graph = CallGraph::of(&bench)?;
+    let unbound = CallGraph::of(&bench)?;
     for controller in &mut figures.controllers {
         let precision = &controller.precision;
+        let graph = unbound
+            .clone()
+            .with_laws_of(&format!("build_{precision}"))?;
         let cycle = graph.below(&format!("cycle_{precision}"))?;
         let init = graph.below(&format!("build_{precision}"))?;
         if controller.experiment == EXPLAINED {
@@ -95,10 +98,13 @@ fn measure() -> Result<Figures, Trouble> {
     let flash = |features: &str| Ok(memory(&image("footprint", features)?)?["flash"]);
     let empty: u64 = flash("")?;
     for precision in ["f64", "f32"] {
-        let full: Result<u64, Trouble> = flash(&format!("footprint-{precision}"));
-        figures
-            .core_flash
-            .insert(precision.into(), full?.saturating_sub(empty));
+        for (law, feature) in [("", ""), (" with the exact law", ",footprint-exact")] {
+            let full: Result<u64, Trouble> = flash(&format!("footprint-{precision}{feature}"));
+            let flash = full?.saturating_sub(empty);
+            figures
+                .core_flash
+                .insert(format!("{precision}{law}"), flash);
+        }
     }
     figures.host = host::counts()?;
     figures.peers = host::peers()?;

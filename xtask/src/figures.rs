@@ -40,14 +40,18 @@ pub struct Controller {
     pub precision: String,
     /// Full cycle \[instructions\].
     pub cycle: Cost,
+    /// The same by paths.
+    #[serde(default)]
+    pub paths: Vec<Path>,
     /// Where the full cycle is longest.
     pub worst_input: String,
     /// The stages, in order.
     pub stages: Vec<Stage>,
-    /// Inputs with a cut torque, with an unresolved row.
+    /// Inputs with a cut torque, with a level released.
     pub saturated: u64,
     /// See `saturated`.
-    pub deficient: u64,
+    #[serde(default)]
+    pub released: u64,
     /// Of all torque bits, the same on the host.
     pub checksum: String,
     /// Use of the stack \[bytes\].
@@ -65,6 +69,21 @@ pub struct Cost {
     pub max: u64,
     /// Kind of input with the largest.
     pub worst: String,
+}
+
+/// What decides how long a cycle is, and how long it then is \[instructions\].
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct Path {
+    /// Whether a level is released.
+    pub released: bool,
+    /// Pivots of the projection; without any it is not run.
+    pub pivots: u64,
+    /// How many inputs take it.
+    pub inputs: u64,
+    /// Smallest.
+    pub min: u64,
+    /// Largest.
+    pub max: u64,
 }
 
 /// A stage of the cycle.
@@ -90,10 +109,32 @@ pub struct Stack {
     pub cycle_bound: Option<u64>,
 }
 
+impl Path {
+    /// By what decides on it.
+    pub fn name(&self) -> String {
+        let cycle = match (self.released, self.pivots) {
+            (_, 0) => "cycle".into(),
+            (_, pivots) => format!("cycle with {pivots} pivots"),
+        };
+        let released = if self.released {
+            ", a level released"
+        } else {
+            ""
+        };
+        format!("{cycle}{released}")
+    }
+}
+
 impl Controller {
     /// Experiment and precision.
     pub fn name(&self) -> String {
         format!("{} {}", self.experiment, self.precision)
+    }
+
+    /// A path, where an input took it.
+    pub fn path(&self, released: bool, pivots: u64) -> Option<&Path> {
+        let is_it = |path: &&Path| (path.released, path.pivots) == (released, pivots);
+        self.paths.iter().find(is_it)
     }
 }
 
@@ -125,8 +166,8 @@ impl Figures {
                 let [
                     "saturated",
                     saturated,
-                    "deficient",
-                    deficient,
+                    "released",
+                    released,
                     "checksum",
                     checksum,
                 ] = *rest
@@ -138,7 +179,7 @@ impl Figures {
                     experiment: experiment.into(),
                     precision: precision.into(),
                     saturated: number(saturated)?,
-                    deficient: number(deficient)?,
+                    released: number(released)?,
                     checksum: checksum.into(),
                     ..Controller::default()
                 });
@@ -161,6 +202,15 @@ impl Figures {
                         } else {
                             controller.stages.push(Stage { name, cost });
                         }
+                    }
+                    ("path", &[released, pivots, inputs, min, max]) => {
+                        controller.paths.push(Path {
+                            released: number(released)? == 1,
+                            pivots: number(pivots)?,
+                            inputs: number(inputs)?,
+                            min: number(min)?,
+                            max: number(max)?,
+                        });
                     }
                     ("worst", input) => controller.worst_input = input.join(" "),
                     ("stack", ["init", init, "cycle", cycle]) => {
@@ -194,7 +244,10 @@ impl Figures {
         let bound = |bytes: Option<u64>| bytes.unwrap_or(u64::MAX);
         for controller in &self.controllers {
             let (of, stack) = (&controller.name(), &controller.stack);
-            add(of, "cycle, instructions", controller.cycle.max);
+            add(of, "longest cycle, instructions", controller.cycle.max);
+            for path in &controller.paths {
+                add(of, &format!("{}, instructions", path.name()), path.max);
+            }
             for Stage { name, cost } in &controller.stages {
                 add(of, &format!("{name} alone, instructions"), cost.max);
             }

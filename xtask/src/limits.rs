@@ -16,7 +16,10 @@ pub const LIMITS: [(&str, u64); 10] = [
     ("stack bound of the constructor, bytes", 12_288),
 ];
 
-/// Smallest to largest instruction count of a cycle: a spread below 0.5 %.
+/// Most pivots of a projection: every number of them has to be measured.
+const PIVOTS: u64 = 12;
+
+/// Smallest to largest instruction count of a path: a spread below 0.5 %.
 const SPREAD_PER_MILLE: u64 = 5;
 
 /// One line per figure that is beyond its limit, or that is not there.
@@ -45,12 +48,19 @@ pub fn exceeded(figures: &Figures) -> Vec<String> {
         );
     }
     for controller in &figures.controllers {
-        let (of, cycle, stack) = (controller.name(), &controller.cycle, &controller.stack);
-        if 1000 * (cycle.max - cycle.min) >= SPREAD_PER_MILLE * cycle.min {
-            let (min, max) = (cycle.min, cycle.max);
-            lines.push(format!(
-                "{of}: cycle takes {min} to {max} instructions; the spread must be below 0.5 %"
-            ));
+        let (of, stack) = (controller.name(), &controller.stack);
+        for path in &controller.paths {
+            let (name, min, max) = (path.name(), path.min, path.max);
+            if 1000 * (max - min) >= SPREAD_PER_MILLE * min {
+                lines.push(format!(
+                    "{of}: {name} takes {min} to {max} instructions; the spread must be below 0.5 %"
+                ));
+            }
+        }
+        for pivots in 0..=PIVOTS {
+            if controller.path(false, pivots).is_none() {
+                lines.push(format!("{of}: no input takes {pivots} pivots"));
+            }
         }
         for (what, bound, seen) in [
             ("cycle", stack.cycle_bound, stack.cycle_seen),

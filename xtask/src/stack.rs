@@ -13,12 +13,18 @@ const BRANCHES: [&str; 18] = [
     "bgt", "ble", "cbz", "cbnz",
 ];
 
+/// The function whose indirect call leads to the law that a controller was made with, and the
+/// laws there are.
+const RUN_LAW: &str = "::stages::run_law::";
+const LAWS: [&str; 2] = ["::stages::exact_law::", "::stages::law_within_limits::"];
+
 /// An image taken apart.
+#[derive(Clone)]
 pub struct CallGraph {
     functions: BTreeMap<u64, Function>,
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Function {
     name: String,
     /// Behind its last instruction or constant.
@@ -26,6 +32,10 @@ struct Function {
     /// Everything that any of its instructions takes from the stack \[bytes\].
     frame: u64,
     callees: BTreeSet<u64>,
+    /// Addresses of functions that it takes.
+    taken: BTreeSet<u64>,
+    /// Low halves of addresses in registers.
+    halves: BTreeMap<String, u64>,
     /// An instruction that cannot be followed.
     opaque: Option<String>,
 }
@@ -80,15 +90,45 @@ impl CallGraph {
         Self { functions }
     }
 
-    /// Everything below the function whose path contains `name`.
-    pub fn below(&self, name: &str) -> Result<Below, Trouble> {
+    /// The same where controllers are made by the function `constructor`: then it is known which
+    /// laws they can have, those whose address is taken below it.
+    pub fn with_laws_of(mut self, constructor: &str) -> Result<Self, Trouble> {
+        let mut laws = BTreeSet::new();
+        for address in self.reached(self.start(constructor)?) {
+            laws.extend(self.functions.get(&address).iter().flat_map(|f| &f.taken));
+        }
+        let is_law = |address: &u64| {
+            let function = self.functions.get(address);
+            function.is_some_and(|f| LAWS.iter().any(|law| f.name.contains(law)))
+        };
+        laws.retain(is_law);
+        if laws.is_empty() {
+            let text = format!("{constructor} makes no controller with a law");
+            return Err(Trouble::new(text));
+        }
+        let run = self.functions.values_mut();
+        for function in run.filter(|function| function.name.contains(RUN_LAW)) {
+            function.callees.extend(&laws);
+            function.opaque = None;
+        }
+        Ok(self)
+    }
+
+    /// Where the one function begins whose path contains `name`.
+    fn start(&self, name: &str) -> Result<u64, Trouble> {
         let pattern = format!("::{name}::");
         let mut found = (self.functions.iter()).filter(|(_, f)| f.name.contains(&pattern));
-        let (Some((&start, _)), None) = (found.next(), found.next()) else {
-            return Err(Trouble::new(format!(
+        match (found.next(), found.next()) {
+            (Some((&start, _)), None) => Ok(start),
+            _ => Err(Trouble::new(format!(
                 "not one function {name} in the image"
-            )));
-        };
+            ))),
+        }
+    }
+
+    /// Everything below the function whose path contains `name`.
+    pub fn below(&self, name: &str) -> Result<Below, Trouble> {
+        let start = self.start(name)?;
         let mut depths = BTreeMap::new();
         let stack = self.depth(start, &mut Vec::new(), &mut depths);
         let deepest = match stack {
@@ -103,17 +143,21 @@ impl CallGraph {
     }
 
     fn code(&self, start: u64) -> u64 {
+        let size = |address: &u64| self.functions.get(address).map(|f| f.end - address);
+        self.reached(start).iter().filter_map(size).sum()
+    }
+
+    /// The functions that can be reached from one, itself included.
+    fn reached(&self, start: u64) -> BTreeSet<u64> {
         let (mut reached, mut open) = (BTreeSet::new(), vec![start]);
-        let mut code = 0;
         while let Some(address) = open.pop() {
             if let Some(function) = self.functions.get(&address)
                 && reached.insert(address)
             {
-                code += function.end - address;
                 open.extend(&function.callees);
             }
         }
-        code
+        reached
     }
 
     fn deepest(&self, start: u64, depths: &BTreeMap<u64, u64>) -> Vec<(u64, String)> {
@@ -177,6 +221,17 @@ impl Function {
             "str" | "strd" if operands.contains("[sp, #-") && operands.ends_with(']') => {}
             "str" | "strd" if operands.contains("[sp, #-") => {
                 self.frame += immediate(operands.replace("#-", "#").as_str()).unwrap_or(8);
+            }
+            // An address, in two halves; its lowest bit says that Thumb code is there.
+            "movw" | "movt" => {
+                let (register, value) = (operands.split(',').next(), immediate(operands));
+                if let (Some(register), Some(value)) = (register, value) {
+                    if base == "movw" {
+                        self.halves.insert(register.into(), value);
+                    } else if let Some(low) = self.halves.get(register) {
+                        self.taken.insert((value << 16 | low) & !1);
+                    }
+                }
             }
             "blx" => self.opaque = Some(format!("{mnemonic} {operands}")),
             "bx" if operands != "lr" => self.opaque = Some(format!("{mnemonic} {operands}")),
@@ -286,6 +341,44 @@ mod tests {
         assert!(open.stack.is_err());
         assert_eq!(open.code, 4);
         assert!(graph.below("missing").is_err());
+    }
+
+    const LAW: &str = "
+00000100 <a::make_wide::h1>:
+     100:      \tmovw\tr0, #0x301
+     104:      \tmovt\tr0, #0x1
+     108:      \tbx\tlr
+0000010a <a::make_none::h1>:
+     10a:      \tmovw\tr0, #0x501
+     10e:      \tmovt\tr0, #0x1
+     112:      \tbx\tlr
+00000200 <a::cycle::h2>:
+     200:      \tpush\t{r7, lr}
+     202:      \tbl\t0x20a <c::stages::run_law::h3> @ imm = #0x4
+     206:      \tpop\t{r7, pc}
+0000020a <c::stages::run_law::h3>:
+     20a:      \tldr\tr3, [r0]
+     20c:      \tbx\tr3
+00010300 <c::stages::law_within_limits::h4>:
+   10300:      \tsub\tsp, #0x40
+   10302:      \tbx\tlr
+00010400 <c::stages::exact_law::h5>:
+   10400:      \tsub\tsp, #0x80
+   10402:      \tbx\tlr
+00010500 <c::other::h6>:
+   10500:      \tbx\tlr
+";
+
+    #[test]
+    fn a_law_is_called_that_the_constructor_takes_the_address_of() {
+        let graph = CallGraph::parse(LAW);
+        assert!(graph.below("cycle").expect("a function").stack.is_err());
+        let wide = graph.clone().with_laws_of("make_wide").expect("a law");
+        let below = wide.below("cycle").expect("a function");
+        assert_eq!(below.stack, Ok(8 + 0x40));
+        assert_eq!(below.code, 10 + 6 + 6);
+        // The address of a function that is no law leads nowhere.
+        assert!(graph.with_laws_of("make_none").is_err());
     }
 
     #[test]

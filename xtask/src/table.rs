@@ -1,6 +1,6 @@
 //! docs/timing.md from the figures; timing.md beside this file has its text.
 
-use crate::figures::{Controller, Figures, Stage};
+use crate::figures::{Controller, Figures, Path, Stage};
 use crate::limits::LIMITS;
 
 /// Core clock of the estimate \[MHz\].
@@ -24,6 +24,7 @@ pub fn page(figures: &Figures) -> String {
     let parts = [
         ("{tools}", tools(figures)),
         ("{cycles}", cycles(figures)),
+        ("{paths}", paths(figures)),
         ("{limits}", limits()),
         ("{stages}", stages(figures)),
         ("{memory}", memory(figures)),
@@ -37,7 +38,8 @@ pub fn page(figures: &Figures) -> String {
 
 /// What the command prints.
 pub fn summary(figures: &Figures) -> String {
-    format!("{}\n{}", cycles(figures), memory(figures))
+    let parts = [cycles(figures), paths(figures), memory(figures)];
+    parts.join("\n")
 }
 
 fn table(head: &str, rows: impl IntoIterator<Item = String>) -> String {
@@ -65,18 +67,61 @@ fn cycles(figures: &Figures) -> String {
             precision,
             cycle,
             saturated,
-            deficient,
+            released,
             ..
         } = controller;
-        let (min, max, worst) = (cycle.min, cycle.max, &cycle.worst);
-        let spread = 100.0 * (max - min) as f64 / min.max(1) as f64;
+        let (idle, max, worst) = (idle(controller), cycle.max, &cycle.worst);
         let rows = rows(experiment);
         format!(
-            "{experiment} | {rows} | {precision} | {min} | {max} | {spread:.2} % | {worst} | {saturated} | {deficient}"
+            "{experiment} | {rows} | {precision} | {idle} | {max} | {worst} | {saturated} | {released}"
         )
     };
-    let head = "controller | rows | precision | smallest | largest | spread | largest at | torques cut | rows not resolved";
+    let head = "controller | rows | precision | nothing at a limit | longest | longest at | torques cut | levels released";
     table(head, figures.controllers.iter().map(row))
+}
+
+/// The longest cycle that neither projects nor has a level released.
+fn idle(controller: &Controller) -> u64 {
+    controller.path(false, 0).map_or(0, |path| path.max)
+}
+
+/// What makes a cycle longer, and the paths themselves.
+fn paths(figures: &Figures) -> String {
+    let row = |name: &str, value: &dyn Fn(&Controller) -> Option<String>| {
+        let cells = figures.controllers.iter().map(value);
+        let cells = cells.map(|cell| format!(" | {}", cell.unwrap_or_default()));
+        format!("{name}{}", cells.collect::<String>())
+    };
+    let max = |it: &Controller, released, pivots| Some(it.path(released, pivots)?.max as f64);
+    let pivot = |it: &Controller| Some((max(it, false, 12)? - max(it, false, 1)?) / 11.0);
+    let mut lines = vec![
+        row("nothing at a limit", &|it| Some(idle(it).to_string())),
+        row("a level released, besides", &|it| {
+            Some((max(it, true, 0)? - max(it, false, 0)?).to_string())
+        }),
+        row("projection, besides", &|it| {
+            let stage = max(it, false, 1)? - max(it, false, 0)? - pivot(it)?;
+            Some(format!("{stage:.0}"))
+        }),
+        row("each pivot, besides", &|it| {
+            Some(format!("{:.0}", pivot(it)?))
+        }),
+    ];
+    for pivots in 1..=12 {
+        lines.push(row(&format!("with {pivots} pivots"), &|it| {
+            Some(max(it, false, pivots)?.to_string())
+        }));
+    }
+    lines.push(row("largest spread of a path", &|it| {
+        let spread = |path: &Path| 100.0 * (path.max - path.min) as f64 / path.min.max(1) as f64;
+        let largest = it.paths.iter().map(spread).fold(0.0, f64::max);
+        Some(format!("{largest:.2} %"))
+    }));
+    let names = figures
+        .controllers
+        .iter()
+        .map(|it| format!(" | {}", it.name()));
+    table(&format!("cycle{}", names.collect::<String>()), lines)
 }
 
 fn rows(experiment: &str) -> &'static str {
@@ -114,10 +159,15 @@ fn stages(figures: &Figures) -> String {
             })
             .collect();
         lines.push(row("the rest", "", "", &|own| {
-            let parts: u64 = own.stages.iter().map(|stage| stage.cost.max).sum();
-            own.cycle.max as i64 - parts as i64
+            let parts: u64 = own.stages.iter().map(|stage| stage.cost.min).sum();
+            idle(own) as i64 - parts as i64
         }));
-        lines.push(row("cycle", "**", "cycle", &|own| own.cycle.max as i64));
+        lines.push(row("longest cycle", "**", "cycle", &|own| {
+            own.cycle.max as i64
+        }));
+        lines.push(row("cycle with nothing at a limit", "**", "idle", &|own| {
+            idle(own) as i64
+        }));
         for peer in &figures.peers {
             let count = peer.cycle.get(experiment);
             lines.extend(count.map(|count| format!("{} | | {count} | |", peer.name)));
@@ -160,6 +210,10 @@ fn memory(figures: &Figures) -> String {
             row("code of the cycle", &|it| Some(it.code)),
             row("flash of the linked core", &|it| {
                 figures.core_flash.get(&it.precision).copied()
+            }),
+            row("the same with the exact law", &|it| {
+                let name = format!("{} with the exact law", it.precision);
+                figures.core_flash.get(&name).copied()
             }),
             size("controller"),
             size("state"),

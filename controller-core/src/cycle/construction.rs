@@ -29,10 +29,9 @@ impl<T: Real> Controller<T> {
             return Err(ConfigError::IntegratedPosture);
         }
         Self::made(arm, config, |model, fastest_mode| {
-            let mut controller = Self::converted(model, config, fastest_mode, within_limits());
             let limits = joint_limits(arm, model, config.cycle_s, config.dead_cycles);
-            controller.bounds = JointBounds::new(model, &limits);
-            controller
+            let bounds = JointBounds::new(model, &limits);
+            Self::converted(model, config, fastest_mode, within_limits(), &bounds)
         })
     }
 
@@ -70,26 +69,25 @@ impl<T: Real> Controller<T> {
         config: &ControllerConfig,
         fastest_mode: DampingRate,
     ) -> Self {
-        let mut controller = Self::converted(arm, config, fastest_mode, exact());
-        controller.levels.follow_every_error();
-        controller
+        Self::converted(arm, config, fastest_mode, exact(), &JointBounds::none())
     }
 
-    /// No check, no bounds of joints. Behind a call, so that the parts are made in the place of
-    /// the result and nowhere else.
+    /// No check. Behind a call, so that the parts are made in the place of the result and nowhere
+    /// else.
     #[inline(never)]
     fn converted(
         arm: &ArmModel<T>,
         config: &ControllerConfig,
         fastest_mode: DampingRate,
         law: Law<T>,
+        bounds: &JointBounds<T>,
     ) -> Self {
         let cycle_s = T::from_f64(config.cycle_s);
         Self {
             arm: *arm,
             law,
-            levels: Levels::new(&config.tasks, arm),
-            bounds: JointBounds::none(),
+            levels: Levels::new(&config.tasks, arm, law.limits),
+            bounds: *bounds,
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),
             cycle_s,

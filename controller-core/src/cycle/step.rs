@@ -4,7 +4,7 @@ use super::brake::{Brake, next};
 use super::controller::Controller;
 use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
-use super::stages::{Stage, StageName, kinematics_at};
+use super::stages::{Stage, StageName, kinematics_at, run_law};
 use super::usable::admit;
 use crate::fault::{Fault, Limits, Mode, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
@@ -71,7 +71,7 @@ impl<T: Real> Controller<T> {
         measurement: &Measurement<T>,
         reference: &Reference<T>,
     ) -> Step<T> {
-        self.step_by(state, measurement, reference, self.law.run)
+        self.step_by(state, measurement, reference, run_law)
     }
 
     /// One cycle with another law in the place of [`StageName::TorqueDemand`] of the exact law,

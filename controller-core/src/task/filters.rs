@@ -56,8 +56,8 @@ pub(crate) struct LevelFilters<T: Real> {
 }
 
 impl<T: Real> LevelFilters<T> {
-    /// Of a task at the place `level`, counted from 0.
-    pub fn new(task: &Task, level: usize) -> Self {
+    /// Of a task at the place `level`, counted from 0; without `shortens` every error is followed.
+    pub fn new(task: &Task, level: usize, shortens: bool) -> Self {
         let limits = task.limits.unwrap_or(match level {
             0 => LevelLimits::FIRST,
             _ => LevelLimits::BELOW,
@@ -82,7 +82,12 @@ impl<T: Real> LevelFilters<T> {
             free: T::from_f64(1.0 / (3.0 * z0)),
             stiff_cubed: T::from_f64(stiff * stiff * stiff),
             approach: approach(task).map(T::from_f64),
-            error_speed: T::from_f64(limits.error_speed / length),
+            error_speed: T::from_f64(if shortens {
+                limits.error_speed / length
+            } else {
+                // Farther than any error that is believed.
+                1e15
+            }),
         }
     }
 

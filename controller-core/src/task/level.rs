@@ -67,8 +67,9 @@ pub(crate) struct Level<T: Real> {
 }
 
 impl<T: Real> Level<T> {
-    /// At the place `number`, counted from 0, with its rows from `start` on.
-    fn new(task: &Task, number: usize, start: usize, arm: &ArmModel<T>) -> Self {
+    /// With its rows from `start` on.
+    #[inline(always)]
+    fn new(task: &Task, start: usize, arm: &ArmModel<T>, filters: LevelFilters<T>) -> Self {
         let (tracked, reach) = match task.tracked {
             Tracked::Position(point) => {
                 let offset = Vector3::from(point.offset.map(T::from_f64));
@@ -100,8 +101,19 @@ impl<T: Real> Level<T> {
             size: task.axes.count().min(3),
             row_damping: by_rows(&task.gains.damping, task.axes),
             length: T::from_f64(length(task)),
-            filters: LevelFilters::new(task, number),
+            filters,
         }
+    }
+
+    /// The level at the place `number`, counted from 0, or behind the last one any.
+    #[inline(never)]
+    fn at(set: &TaskSet, number: usize, arm: &ArmModel<T>, limits: bool) -> Self {
+        const UNUSED: Task =
+            Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(1.0, 1.0));
+        let task = set.tasks().get(number).unwrap_or(&UNUSED);
+        let above = set.tasks().iter().take(number);
+        let start = above.map(|task| task.axes.count()).sum();
+        Self::new(task, start, arm, LevelFilters::new(task, number, limits))
     }
 
     /// The rows of the stack that are the level's.
@@ -140,41 +152,26 @@ pub(crate) struct Levels<T: Real> {
 }
 
 impl<T: Real> Levels<T> {
+    /// With `limits` errors are shortened that call for too much speed; else every one is followed.
     /// Behind a call, so that the levels are made in the place of the result.
     #[inline(never)]
-    pub fn new(set: &TaskSet, arm: &ArmModel<T>) -> Self {
-        const UNUSED: Task =
-            Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(1.0, 1.0));
-        let mut start = 0;
-        let mut tasks = set.tasks().iter();
+    pub fn new(set: &TaskSet, arm: &ArmModel<T>, limits: bool) -> Self {
+        let at = |number| Level::at(set, number, arm, limits);
         Self {
-            levels: core::array::from_fn(|number| {
-                let task = tasks.next().unwrap_or(&UNUSED);
-                let from = start;
-                start += task.axes.count();
-                Level::new(task, number, from, arm)
-            }),
+            // One by one: a function that makes arrays makes them elsewhere first.
+            levels: [at(0), at(1), at(2), at(3), at(4), at(5), at(6)],
             count: set.tasks().len(),
             shoulder: arm.shoulder(),
         }
     }
 
     /// With K_p = `stiffness` \[1/s2\] and K_d = `damping` \[1/s\] on every axis that a level
-    /// controls, errors followed however large.
+    /// controls.
     pub fn set_gains(&mut self, stiffness: T, damping: T) {
         for level in &mut self.levels {
             let uniform =
                 |gain: T| Matrix3::from_diagonal(&level.axes.select(&Vector3::repeat(gain)));
             (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
-        }
-        self.follow_every_error();
-    }
-
-    /// Every error is followed, however large.
-    pub fn follow_every_error(&mut self) {
-        for level in &mut self.levels {
-            // Farther than any error that is believed.
-            level.filters.error_speed = T::from_f64(1e15);
         }
     }
 

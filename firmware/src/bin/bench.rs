@@ -39,13 +39,13 @@ measured!(f32, build_f32, cycle_f32);
 
 fn print_inputs(name: &str, precision: &str, survey: &Survey) {
     say!(
-        "inputs {} {} {} faults {} saturated {} deficient {} checksum {:016x}",
+        "inputs {} {} {} faults {} saturated {} released {} checksum {:016x}",
         name,
         precision,
         workload::COUNT,
         survey.faults,
         survey.saturated,
-        survey.deficient,
+        survey.released,
         survey.checksum
     );
 }
@@ -155,6 +155,21 @@ mod target {
             );
         };
         print("cycle", &found.cycle);
+        for (released, paths) in found.paths.iter().enumerate() {
+            for (pivots, path) in paths.iter().enumerate().filter(|(_, path)| path.inputs > 0) {
+                let (inputs, min, max) = (path.inputs, path.min, path.max);
+                say!(
+                    "path {} {} {} {} {} {} {}",
+                    name,
+                    T::NAME,
+                    released,
+                    pivots,
+                    inputs,
+                    min,
+                    max
+                );
+            }
+        }
         for ((stage, _), cost) in Controller::<T>::STAGES.iter().zip(&found.stages) {
             print(stage.text(), cost);
         }
