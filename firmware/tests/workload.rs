@@ -34,7 +34,7 @@ fn every_input_is_believed_and_some_are_hard() {
         for found in [surveyed::<f64>(scenario), surveyed::<f32>(scenario)] {
             assert_eq!(found.faults, 0);
             assert!(found.saturated > 500 && found.saturated < COUNT - 200);
-            assert!(found.deficient > 20);
+            assert!(found.released > 20);
             // The overhead of two readings is taken off.
             assert!(found.stages.iter().all(|s| (s.min, s.max) == (0, 0)));
         }

@@ -90,7 +90,13 @@ fn run(scenario: Scenario, plant: PlantKind) -> (Summary, Vec<Row>) {
     let row = |line: &str| {
         let numbers: Vec<f64> = line
             .split(',')
-            .map(|cell| cell.parse().expect(cell))
+            .map(|cell| {
+                if cell.is_empty() {
+                    f64::NAN
+                } else {
+                    cell.parse().expect(cell)
+                }
+            })
             .collect();
         let from = |name: &str, i: usize| numbers[place(name) + i];
         Row {
