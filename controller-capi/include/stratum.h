@@ -204,7 +204,7 @@ enum {
 #define STRATUM_CONTROLLER_WORDS 900
 
 // Storage of a state in words of 8 bytes.
-#define STRATUM_STATE_WORDS 1500
+#define STRATUM_STATE_WORDS 1650
 
 // sizeof(StratumController).
 #define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)

@@ -35,14 +35,14 @@ static const struct {
 } functions[] = {
     {"settings_of_arm", settings_of_arm, 6144},
     {"settings_default", settings_default, 6144},
-    {"settings_text", settings_text, 22528},
-    {"controller_init", controller_init, 16384},
-    {"state_init", state_init, 10240},
+    {"settings_text", settings_text, 27648},
+    {"controller_init", controller_init, 20480},
+    {"state_init", state_init, 11264},
     {"reference_hold", hold, 10240},
     {"reference_get", get, 1024},
     {"reference_set", set, 1024},
-    {"step", step, 2048},
-    {"step on a fault", fault, 2048},
+    {"step", step, 2560},
+    {"step on a fault", fault, 2560},
     {"fault_text", fault_text, 4096},
 };
 
