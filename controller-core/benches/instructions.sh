@@ -25,7 +25,7 @@ cd "$(dirname "$0")/../.."
 limit() {
   case "$1" in
     idle) echo 14000 ;;
-    step) echo 17500 ;;
+    step) echo 20600 ;;
   esac
 }
 

@@ -21,7 +21,7 @@ use criterion::Criterion;
 /// contain, take a PC much longer.
 fn cycle<T: Real>(criterion: &mut Criterion, case: &Case<T>) {
     let states = states(&LWR_IV);
-    let random = states.iter().filter(|input| input.kind == "random");
+    let random = states.iter().take(cases::RANDOM);
     let inputs: Vec<_> = random.map(|input| case.typed(input)).collect();
     let mut next = inputs.iter().cycle();
     let mut state = State::new();

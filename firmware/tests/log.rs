@@ -2,7 +2,7 @@
 
 use controller_core::Measurement;
 use firmware::log::{CYCLE_BYTES, Entry, HEADER_BYTES, Header, NUMBERS, Number, replay};
-use firmware::recording::write_run;
+use firmware::recording::{Met, write_run};
 use firmware::scenario::{FixedScenario, ReadyScenario};
 
 const CYCLES: u16 = 300;
@@ -41,7 +41,7 @@ fn headers_and_entries_come_back() {
 
 fn recorded<T: Number>(scenario: FixedScenario) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_run::<T>(&mut bytes, scenario, CYCLES).expect("a clean run");
+    write_run::<T>(&mut bytes, scenario, CYCLES, &mut Met::default()).expect("a clean run");
     assert_eq!(
         bytes.len(),
         HEADER_BYTES + usize::from(CYCLES) * NUMBERS * T::BYTES

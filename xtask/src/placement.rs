@@ -16,10 +16,11 @@ const DTCM: Memory = ("DTCM", 0x2000_0000..0x2002_0000);
 
 /// What has to be in the image: parts of its name, and where it belongs. Stages are
 /// entries of a list, so that a call of one need not be direct.
-const REQUIRED: [(&[&str], &Memory); 5] = [
+const REQUIRED: [(&[&str], &Memory); 6] = [
     (&["stm32h743::cycle::Loop", "::run::"], &ITCM),
-    (&["controller_core::cycle::step::", "step_with"], &ITCM),
     (&["controller_core::cycle::stages::"], &ITCM),
+    (&["controller_core::cycle::stages::run_law"], &ITCM),
+    (&["controller_core::law::limits::projection::"], &ITCM),
     (&["stm32h743", "::CONTROL"], &DTCM),
     (&["_stack_start"], &DTCM),
 ];
@@ -129,7 +130,8 @@ mod tests {
 
     const GOOD: &str = "\
 00000050 t stm32h743::cycle::Loop$LT$J$GT$::run::h8b38
-00000580 t controller_core::cycle::step::_$LT$impl$u20$Controller$LT$T$GT$$GT$::step_with::h2800
+00000580 t controller_core::cycle::stages::run_law::h2800
+00000600 t controller_core::law::limits::projection::Projection$LT$T$GT$::project::h2800
 00007e28 t controller_core::cycle::stages::hierarchy::h3ade
 0800f4c0 t controller_core::task::set::TaskSet::new::h6c88
 080056c4 t __Thumbv7ABSLongThunk___aeabi_memcpy8
@@ -146,7 +148,7 @@ mod tests {
                 "controller_core::cycle::stages::hierarchy: at 0x8007e28; allowed 0x40 to 0x10000, ITCM"
             ]
         );
-        let gone = GOOD.replace("::step_with::", "::new::");
+        let gone = GOOD.replace("::run_law::", "::observer::");
         assert_eq!(misplaced(&symbols(&gone)).len(), 1);
         assert_eq!(
             misplaced(&symbols(&GOOD.replace("20000008", "24000008"))).len(),

@@ -17,7 +17,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// Random states, besides the adversarial ones.
-const RANDOM: usize = 2_000;
+pub const RANDOM: usize = 2_000;
 
 /// One controller.
 pub struct Case<T: Real> {
@@ -29,7 +29,6 @@ pub struct Case<T: Real> {
 /// One cycle's input, in double precision.
 #[derive(Clone, Copy)]
 pub struct Input {
-    pub kind: &'static str,
     pub q: [f64; 7],
     pub dq: [f64; 7],
     pub interval_s: f64,
@@ -125,7 +124,6 @@ pub fn states(arm: &ArmParameters) -> Vec<Input> {
     let speed = |i: usize| arm.links[i].speed_limit;
     let mut states: Vec<Input> = (0..RANDOM)
         .map(|_| Input {
-            kind: "random",
             q: anywhere(&mut random),
             dq: random.joints(|i, unit| unit * speed(i)),
             interval_s: 0.002 * (1.0 + 0.4 * random.unit()),
@@ -134,7 +132,6 @@ pub fn states(arm: &ArmParameters) -> Vec<Input> {
         })
         .collect();
     let rest = Input {
-        kind: "adversarial",
         q: [0.0; 7],
         dq: [0.0; 7],
         interval_s: 0.002,

@@ -110,7 +110,7 @@ impl<T: Real> Controller<T> {
     const WITHIN_LIMITS: [Stage<T>; 7] = [
         (StageName::Spectrum, spectrum),
         (StageName::MotionSplit, spectral_motion),
-        (StageName::Posture, posture),
+        (StageName::Posture, constant_posture),
         (StageName::Wish, wish),
         (StageName::Bounds, bounds),
         (StageName::Projection, projection),
@@ -310,6 +310,14 @@ fn posture<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut
         None => *start,
         Some(rate) => data.posture_integral.advance(start, rate, interval_s),
     };
+    if let Some(offset) = data.followed.posture_offset() {
+        data.posture += offset;
+    }
+}
+
+/// Of the law within limits, which has no integrated one.
+fn constant_posture<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    data.posture = *data.followed.posture();
     if let Some(offset) = data.followed.posture_offset() {
         data.posture += offset;
     }

@@ -20,12 +20,17 @@ fn main() -> std::process::ExitCode {
     };
     let written = std::fs::File::create(&path).and_then(|file| {
         let mut out = std::io::BufWriter::new(file);
-        firmware::recording::write_log(&mut out, cycles)?;
-        out.flush()
+        let met = firmware::recording::write_log(&mut out, cycles)?;
+        out.flush()?;
+        Ok(met)
     });
     match written {
-        Ok(()) => {
+        Ok(met) => {
             println!("{path}: two scenarios, two precisions, {cycles} cycles each");
+            println!(
+                "        {} with joints at their bounds, by up to {} pivots, {} with a level released",
+                met.projected, met.pivots, met.released
+            );
             0.into()
         }
         Err(error) => {

@@ -268,8 +268,9 @@ impl<T: Real> Wish<T> {
         for (level, leak) in ask.levels.as_slice().iter().zip(&mut self.leak) {
             set_rows(&mut all, level, ask.spectrum, whitened);
             let mut squared = T::ZERO;
-            let rows = all.iter().zip(&self.of_rows).take(level.start + level.size);
-            for (all, own) in rows.skip(level.start) {
+            let rows = all.get(level.rows()).unwrap_or(&[]).iter();
+            let own = self.of_rows.get(level.rows()).unwrap_or(&[]);
+            for (all, own) in rows.zip(own).take(3) {
                 squared += (*all - *own) * (*all - *own);
             }
             *leak = squared.square_root() * level.length;
@@ -286,7 +287,7 @@ fn set_rows<T: Real>(
     x: &JointVector<T>,
 ) {
     let of_rows = of_rows.get_mut(level.rows()).unwrap_or(&mut []);
-    for (of_row, direction) in of_rows.iter_mut().zip(spectrum.of(level)) {
+    for (of_row, direction) in of_rows.iter_mut().zip(spectrum.of(level)).take(3) {
         *of_row = direction.row.dot(x);
     }
 }
