@@ -131,13 +131,6 @@ pub fn states(arm: &ArmParameters) -> Vec<Input> {
             posture: anywhere(&mut random),
         })
         .collect();
-    let rest = Input {
-        q: [0.0; 7],
-        dq: [0.0; 7],
-        interval_s: 0.002,
-        offset: 0.0,
-        posture: [0.0; 7],
-    };
     let quarter = core::f64::consts::FRAC_PI_2;
     let postures = [
         [0.0; 7],
@@ -181,7 +174,6 @@ pub fn states(arm: &ArmParameters) -> Vec<Input> {
                     interval_s,
                     offset,
                     posture: within([far; 7], |[least, greatest]| 0.49 * (greatest - least)),
-                    ..rest
                 });
             }
         }
