@@ -143,10 +143,10 @@ impl<T: Real> Cholesky<T> {
     pub fn lower_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
         for i in 0..DOF {
-            y[i] = self.l[(i, i)] * x[i];
+            y[i] = self.l[(i, 0)] * x[0];
         }
-        for_each_joint!(j, {
-            for i in j + 1..DOF {
+        for_each_joint!(@ j, [1 2 3 4 5 6], {
+            for i in j..DOF {
                 y[i] += self.l[(i, j)] * x[j];
             }
         });

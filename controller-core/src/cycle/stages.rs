@@ -9,7 +9,7 @@ use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
 use crate::law::allocation::TorqueLimits;
-use crate::law::control::{Control, TorqueDemand};
+use crate::law::control::TorqueDemand;
 use crate::law::limits::projection::Wished;
 use crate::law::limits::wish::Ask;
 use crate::law::motion::MotionSplit;
@@ -352,8 +352,7 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let null_force = Control::null_force(
-        &controller.compliance,
+    let null_force = controller.compliance.force(
         &data.dynamics,
         &data.rows,
         &data.motion,

@@ -12,7 +12,7 @@ use super::hierarchy::Hierarchy;
 use super::motion::MotionSplit;
 use super::null_space::Compliance;
 use crate::arm::dynamics::Dynamics;
-use crate::joint::{DOF, JointVector, zeros};
+use crate::joint::{JointVector, zeros};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 
@@ -47,30 +47,13 @@ impl<T: Real> Control<T> {
         motion: &MotionSplit<T>,
         posture_error: &JointVector<T>,
     ) {
+        let transport = rows.rate_transposed_times(&motion.task_momentum);
         self.task_acceleration = hierarchy.solve(&rows.acceleration());
-        self.null_force = Self::null_force(compliance, dynamics, rows, motion, posture_error);
-    }
-
-    /// f \[Nm\], towards a posture that is `posture_error` q_d - q \[rad\] away.
-    #[must_use]
-    #[inline]
-    pub fn null_force(
-        compliance: &Compliance<T>,
-        dynamics: &Dynamics<T>,
-        rows: &TaskRows<T>,
-        motion: &MotionSplit<T>,
-        posture_error: &JointVector<T>,
-    ) -> JointVector<T> {
-        let mut force = rows.rate_transposed_times(&motion.task_momentum) - dynamics.coriolis;
-        for j in 0..DOF {
-            let (velocity, error) = (motion.task_velocity[j], posture_error[j]);
-            for i in 0..DOF {
-                force[i] -= dynamics.coriolis_matrix[(j, i)] * velocity;
-                force[i] += compliance.stiffness[(i, j)] * error;
-            }
-        }
-        (compliance.damping).take_from(&mut force, dynamics, &motion.null_velocity);
-        force
+        self.null_force = transport
+            - dynamics.coriolis
+            - dynamics.coriolis_transpose_times(&motion.task_velocity)
+            + compliance.stiffness * posture_error
+            - compliance.damping.times(dynamics, &motion.null_velocity);
     }
 }
 

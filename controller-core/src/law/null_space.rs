@@ -1,11 +1,13 @@
 //! Compliance of what the tasks leave: stiffness, damping, posture.
 
+use super::motion::MotionSplit;
 use crate::arm::dynamics::Dynamics;
 use crate::error::{ConfigError, Gain};
 use crate::gain;
 use crate::joint::{DOF, JointMatrix, JointVector, zeros};
 use crate::ranges::GAIN_MAX;
 use crate::real::Real;
+use crate::task::rows::TaskRows;
 
 /// Compliance of the null space. Plain `f64` data, usable as a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,26 +111,46 @@ impl<T: Real> Compliance<T> {
             posture: null_space.posture,
         }
     }
+
+    /// f \[Nm\] of [`Control`](super::control::Control), of the law within limits: into one vector
+    /// without any of its terms as a vector of its own, and therefore rounded otherwise.
+    #[inline]
+    pub(crate) fn force(
+        &self,
+        dynamics: &Dynamics<T>,
+        rows: &TaskRows<T>,
+        motion: &MotionSplit<T>,
+        posture_error: &JointVector<T>,
+    ) -> JointVector<T> {
+        let (damping, rate) = match &self.damping {
+            Damping::Joint(damping) => (damping, T::ONE),
+            Damping::Inertia(rate) => (&dynamics.mass_matrix, *rate),
+        };
+        let mut force = rows.rate_transposed_times(&motion.task_momentum) - dynamics.coriolis;
+        for j in 0..DOF {
+            let (velocity, error) = (motion.task_velocity[j], posture_error[j]);
+            for i in 0..DOF {
+                force[i] -= dynamics.coriolis_matrix[(j, i)] * velocity;
+                force[i] += self.stiffness[(i, j)] * error;
+            }
+        }
+        for j in 0..DOF {
+            let speed = motion.null_velocity[j] * rate;
+            for i in 0..DOF {
+                force[i] -= damping[(i, j)] * speed;
+            }
+        }
+        force
+    }
 }
 
 impl<T: Real> Damping<T> {
-    /// Takes D x \[Nm for x in rad/s\] off a force.
+    /// D x \[Nm for x in rad/s\].
     #[inline]
-    pub(crate) fn take_from(
-        &self,
-        force: &mut JointVector<T>,
-        dynamics: &Dynamics<T>,
-        x: &JointVector<T>,
-    ) {
-        let (matrix, rate) = match self {
-            Self::Joint(damping) => (damping, T::ONE),
-            Self::Inertia(rate) => (&dynamics.mass_matrix, *rate),
-        };
-        for j in 0..DOF {
-            let speed = x[j] * rate;
-            for i in 0..DOF {
-                force[i] -= matrix[(i, j)] * speed;
-            }
+    pub(crate) fn times(&self, dynamics: &Dynamics<T>, x: &JointVector<T>) -> JointVector<T> {
+        match self {
+            Self::Joint(damping) => damping * x,
+            Self::Inertia(rate) => dynamics.mass_matrix * x * *rate,
         }
     }
 }

@@ -156,7 +156,8 @@ impl<T: Real> Projection<T> {
         let levels = wished.levels.as_slice().iter();
         for (level, disturbance) in levels.zip(&mut self.disturbance) {
             let mut squared = T::ZERO;
-            for row in wished.rows.jacobian.get(level.rows()).unwrap_or(&[]) {
+            let rows = wished.rows.jacobian.get(level.rows()).unwrap_or(&[]);
+            for row in rows.iter().take(3) {
                 let along = row.dot(&difference);
                 squared += along * along;
             }
