@@ -114,6 +114,7 @@ impl Path {
     pub fn name(&self) -> String {
         let cycle = match (self.released, self.pivots) {
             (_, 0) => "cycle".into(),
+            (_, 1) => "cycle with 1 pivot".into(),
             (_, pivots) => format!("cycle with {pivots} pivots"),
         };
         let released = if self.released {

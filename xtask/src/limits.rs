@@ -12,10 +12,10 @@ pub const LIMITS: [(&str, u64); 16] = [
     ("two-level f32: longest cycle, instructions", 19_700),
     ("case-1 f64: longest cycle, instructions", 27_300),
     ("case-1 f32: longest cycle, instructions", 23_400),
-    ("f64: state and stack of the cycle, bytes", 13_200),
-    ("f32: state and stack of the cycle, bytes", 6_720),
-    ("f64: flash of the linked core, bytes", 112_000),
-    ("f32: flash of the linked core, bytes", 105_000),
+    ("f64: state and stack of the cycle, bytes", 13_400),
+    ("f32: state and stack of the cycle, bytes", 6_780),
+    ("f64: flash of the linked core, bytes", 110_500),
+    ("f32: flash of the linked core, bytes", 102_500),
     (
         "f64 with the exact law: flash of the linked core, bytes",
         94_000,
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use crate::figures::{Controller, Cost, Path, Stack};
 
-    const STATE: u64 = 1_000;
+    const STATE: u64 = 2_000;
 
     /// Of everything that has a limit, the instructions those of `case-1` with nothing at a limit.
     fn figures(instructions: u64, bound: Option<u64>, flash: u64) -> Figures {
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn what_is_beyond_a_limit_is_named_with_value_and_limit() {
-        let most = 6_720 - STATE;
+        let most = 6_780 - STATE;
         assert!(exceeded(&figures(15_500, Some(most), 89_000)).is_empty());
         assert_eq!(
             exceeded(&figures(15_501, Some(most), 1)),
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(
             exceeded(&figures(9_000, Some(most + 1), 1)),
             ["case-1", "two-level"].map(|experiment| format!(
-                "{experiment} f32: state and stack of the cycle, bytes: 6721, limit 6720"
+                "{experiment} f32: state and stack of the cycle, bytes: 6781, limit 6780"
             ))
         );
         // Working memory, cycle and constructor of all four.
@@ -153,7 +153,7 @@ mod tests {
         let lost = exceeded(&figures(9_000, None, 1));
         assert_eq!(lost.len(), 12);
         assert!(lost[11].ends_with("bytes: none, limit 12288"), "{lost:?}");
-        assert_eq!(exceeded(&figures(9_000, Some(1), 112_001)).len(), 4);
+        assert_eq!(exceeded(&figures(9_000, Some(1), 110_501)).len(), 4);
         // Ten instructions are too much of a spread here, on every path.
         let paths = 2 * (PIVOTS as usize + 1);
         assert_eq!(exceeded(&figures(1_000, Some(1), 1)).len(), paths);

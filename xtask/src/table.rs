@@ -108,7 +108,8 @@ fn paths(figures: &Figures) -> String {
         }),
     ];
     for pivots in 1..=12 {
-        lines.push(row(&format!("with {pivots} pivots"), &|it| {
+        let plural = if pivots == 1 { "" } else { "s" };
+        lines.push(row(&format!("with {pivots} pivot{plural}"), &|it| {
             Some(max(it, false, pivots)?.to_string())
         }));
     }
