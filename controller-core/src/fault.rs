@@ -408,25 +408,11 @@ pub struct Status {
     pub pivots: u8,
 }
 
-/// The limits of a cycle without a fault, as in [`Status`].
-#[derive(Clone, Copy)]
-pub(crate) struct Limits {
-    pub saturated: IndexSet,
-    pub rank: IndexSet,
-    pub rate_limited: IndexSet,
-    pub joining: IndexSet,
-    pub degraded: IndexSet,
-    pub released: IndexSet,
-    pub shaped: IndexSet,
-    pub scaled: IndexSet,
-    pub at_least: IndexSet,
-    pub at_greatest: IndexSet,
-    pub unresolved: bool,
-    pub pivots: u8,
-}
-
-impl Limits {
-    pub const NONE: Self = Self {
+impl Status {
+    /// No limit, no fault.
+    pub const CLEAR: Self = Self {
+        mode: Mode::Running,
+        fault: None,
         saturated: IndexSet::NONE,
         rank: IndexSet::NONE,
         rate_limited: IndexSet::NONE,
@@ -441,7 +427,9 @@ impl Limits {
         pivots: 0,
     };
 
-    const fn any(&self) -> bool {
+    /// The same of a cycle without a fault: the limits that were active say its mode.
+    #[inline(always)]
+    pub(crate) const fn without_fault(self) -> Self {
         let sets = self.saturated.0
             | self.rank.0
             | self.rate_limited.0
@@ -452,36 +440,14 @@ impl Limits {
             | self.scaled.0
             | self.at_least.0
             | self.at_greatest.0;
-        sets != 0 || self.unresolved
-    }
-}
-
-impl Status {
-    /// No limit, no fault.
-    pub const CLEAR: Self = Self::running(Limits::NONE);
-
-    /// A cycle without a fault, with the limits that were active.
-    #[inline(always)]
-    pub(crate) const fn running(limits: Limits) -> Self {
         Self {
-            mode: if limits.any() {
+            mode: if sets != 0 || self.unresolved {
                 Mode::Limited
             } else {
                 Mode::Running
             },
             fault: None,
-            saturated: limits.saturated,
-            rank: limits.rank,
-            rate_limited: limits.rate_limited,
-            joining: limits.joining,
-            degraded: limits.degraded,
-            released: limits.released,
-            shaped: limits.shaped,
-            scaled: limits.scaled,
-            at_least: limits.at_least,
-            at_greatest: limits.at_greatest,
-            unresolved: limits.unresolved,
-            pivots: limits.pivots,
+            ..self
         }
     }
 

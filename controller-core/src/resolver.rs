@@ -23,7 +23,7 @@ use crate::cycle::config::check_cycle;
 use crate::cycle::measurement::{Measurement, within};
 use crate::cycle::usable::admit;
 use crate::error::ConfigError;
-use crate::fault::{Fault, IndexSet, Limits, Mode, Quantity, Status};
+use crate::fault::{Fault, IndexSet, Mode, Quantity, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::hierarchy::Hierarchy;
 use crate::linalg::Cholesky;
@@ -227,12 +227,13 @@ impl<T: Real> Resolver<T> {
         Resolution {
             q: state.commanded,
             dq,
-            status: Status::running(Limits {
+            status: Status {
                 saturated,
                 rank: state.hierarchy.deficient(),
                 joining: state.followed.joining(),
-                ..Limits::NONE
-            }),
+                ..Status::CLEAR
+            }
+            .without_fault(),
         }
     }
 }

@@ -7,7 +7,7 @@ use super::measurement::Measurement;
 use super::observer::Observer;
 use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
-use crate::fault::{Fault, Limits};
+use crate::fault::{Fault, Status};
 use crate::joint::{JointState, JointVector, zeros};
 use crate::law::allocation::Allocation;
 use crate::law::control::{Control, TorqueDemand};
@@ -129,15 +129,15 @@ impl<T: Real> Data<T> {
 
     /// Writes what the law within limits has met in the cycle.
     #[inline(always)]
-    pub(super) fn tell_limits(&self, active: &mut Limits) {
+    pub(super) fn tell_limits(&self, status: &mut Status) {
         let (spectrum, wish, projection) = (&self.spectrum, &self.wish, &self.projection);
-        active.degraded = spectrum.degraded;
-        active.released = spectrum.released;
-        active.shaped = wish.shaped;
-        active.scaled = wish.scaled;
-        [active.at_least, active.at_greatest] = projection.at_bound;
-        active.unresolved = projection.unresolved;
-        active.pivots = projection.pivots;
+        status.degraded = spectrum.degraded;
+        status.released = spectrum.released;
+        status.shaped = wish.shaped;
+        status.scaled = wish.scaled;
+        [status.at_least, status.at_greatest] = projection.at_bound;
+        status.unresolved = projection.unresolved;
+        status.pivots = projection.pivots;
     }
 
     /// Forgets what is remembered: observer, delay, integrated posture,

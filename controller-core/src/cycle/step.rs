@@ -6,7 +6,7 @@ use super::data::{Data, Input, State};
 use super::measurement::{Measurement, believe};
 use super::stages::{Stage, StageName, kinematics_at, run_law};
 use super::usable::admit;
-use crate::fault::{Fault, Limits, Mode, Status};
+use crate::fault::{Fault, Mode, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
@@ -137,6 +137,18 @@ impl<T: Real> Controller<T> {
         } else {
             &Self::EXACT_STAGES
         };
+        self.run_listed(stages, last, input, data);
+    }
+
+    /// Those of `stages` up to and including `last`.
+    #[inline(always)]
+    fn run_listed(
+        &self,
+        stages: &[Stage<T>],
+        last: StageName,
+        input: &Input<'_, T>,
+        data: &mut Data<T>,
+    ) {
         for (name, run) in stages {
             if *name <= last {
                 run(self, input, data);
@@ -205,11 +217,8 @@ impl<T: Real> Controller<T> {
         state.fault = Some(fault);
         let followed = state.brake.mode != Mode::Stopped && self.follows(state, input.measurement);
         let demand = if followed {
-            for (name, run) in Self::OBSERVED {
-                if name <= StageName::HoldingTorque {
-                    run(self, input, &mut state.data);
-                }
-            }
+            let data = &mut state.data;
+            self.run_listed(&Self::OBSERVED, StageName::HoldingTorque, input, data);
             state.seen = true;
             state.brake.blind_s = T::ZERO;
             state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
@@ -283,23 +292,23 @@ impl<T: Real> State<T> {
         self.count_limits();
         let data = &self.data;
         let allocation = &data.allocation;
-        let mut active = Limits {
+        let mut status = Status {
             saturated: allocation.saturated,
             rate_limited: allocation.rate_limited,
             joining: data.followed.joining(),
-            ..Limits::NONE
+            ..Status::CLEAR
         };
         if limits {
-            data.tell_limits(&mut active);
+            data.tell_limits(&mut status);
         } else {
-            active.rank = data.hierarchy.deficient();
+            status.rank = data.hierarchy.deficient();
         }
         Step {
             torque: allocation.torque,
             residual: *data.residual(),
             gravity: data.dynamics.gravity,
             coriolis: data.dynamics.coriolis,
-            status: Status::running(active),
+            status: status.without_fault(),
         }
     }
 }
