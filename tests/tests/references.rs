@@ -313,6 +313,59 @@ fn joining_is_flagged_as_long_as_it_lasts() {
     }
 }
 
+/// Axes that a level does not control count for nothing: a jump along them is followed at once,
+/// does not change the torque, and does not prolong the joining of one along the others.
+#[test]
+fn only_jumps_along_controlled_axes_are_joined() {
+    let position = |axes| Task::position(FLANGE, axes, REFERENCE_GAINS);
+    let facing = |axes| Task::orientation(Link::L7.frame(), axes, REFERENCE_GAINS);
+    for (task, axes) in [position as fn(_) -> _, facing]
+        .iter()
+        .flat_map(|task| [Axes::X, Axes::XY].map(|axes| (task, axes)))
+    {
+        let controller = controller::<f64>(&with_tasks(&[task(axes)]));
+        let rest = controller.rest_reference(&start());
+        let jumped = |by: [f64; 3]| {
+            let mut reference = rest.clone();
+            match &mut reference.targets_mut()[0] {
+                Target::Position { x, .. } => *x += Vector3::from(by),
+                Target::Orientation { q, .. } => *q = orientation::turned(q, &by.into()),
+                Target::Hold => panic!("a place"),
+            }
+            reference
+        };
+        let run = |by: [f64; 3]| {
+            let mut state = State::new();
+            let _ = controller.step(&mut state, &at_rest(&start()), &rest);
+            let jumped = jumped(by);
+            let steps: Vec<_> = (0..1000)
+                .map(|_| controller.step(&mut state, &at_rest(&start()), &jumped))
+                .collect();
+            let joining = steps.iter().filter(|step| step.status.joining.contains(0));
+            let joined_s = joining.count() as f64 * CYCLE_S;
+            (
+                joined_s,
+                steps[0].torque,
+                controller.followed_reference(&state),
+            )
+        };
+        let (_, held, _) = run([0.0; 3]);
+        // Seen from where the arm is, a turn about z has no other component.
+        let (joined_s, torque, followed) = run([0.0, 0.0, 0.3]);
+        assert_eq!(joined_s, 0.0, "{axes:?}");
+        assert!((torque - held).amax() < 1e-10, "{axes:?}: roundings");
+        assert_eq!(followed, jumped([0.0, 0.0, 0.3]), "{axes:?}");
+        // What is joined takes its own time, however far the other axes go; a cycle for a sum
+        // that is short of it.
+        let (joined_s, torque, _) = run([0.06, 0.0, 0.3]);
+        assert!(
+            (joined_s - JOIN_S).abs() < 2.1 * CYCLE_S,
+            "{axes:?}: {joined_s}"
+        );
+        assert!((torque - held).amax() < 1e-10, "{axes:?}: no step");
+    }
+}
+
 /// On the plant: a jump of 10 cm and one of the posture by half a radian. Followed at once
 /// the first makes a step of K_p x 0.1 m = 40 m/s2 times the inertia, tens of Nm.
 #[test]

@@ -3,6 +3,57 @@
 use crate::joint::{Vector3, zeros};
 use crate::real::Real;
 
+/// Time that passes while a difference dies out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clock<T: Real> {
+    elapsed_s: T,
+    /// 0 where nothing is left.
+    duration_s: T,
+}
+
+impl<T: Real> Clock<T> {
+    /// Nothing is left.
+    pub const ENDED: Self = Self {
+        elapsed_s: T::ZERO,
+        duration_s: T::ZERO,
+    };
+
+    /// For `duration_s` > 0.
+    pub fn new(duration_s: T) -> Self {
+        Self {
+            elapsed_s: T::ZERO,
+            duration_s,
+        }
+    }
+
+    /// Whether some is left.
+    #[inline(always)]
+    pub fn runs(&self) -> bool {
+        self.duration_s > T::ZERO
+    }
+
+    /// Nothing is left from now on.
+    #[inline(always)]
+    pub fn end(&mut self) {
+        self.duration_s = T::ZERO;
+    }
+
+    /// The next cycle, `interval_s` later.
+    #[inline(always)]
+    pub fn advance(&mut self, interval_s: T) {
+        self.elapsed_s += interval_s;
+        if self.elapsed_s >= self.duration_s {
+            self.end();
+        }
+    }
+
+    /// Share of the duration that has passed, 0 to 1. To be asked while it runs.
+    #[inline(always)]
+    pub fn share(&self) -> T {
+        self.elapsed_s / self.duration_s
+    }
+}
+
 /// A difference e that goes to zero in the time T, on the polynomial of least degree whose
 /// value and first two derivatives are those of the difference at first and zero at last:
 ///
@@ -14,17 +65,15 @@ use crate::real::Real;
 pub(crate) struct Decay<T: Real> {
     /// a, b, c.
     coefficients: [Vector3<T>; 3],
-    elapsed_s: T,
-    /// T; 0 where nothing is left.
-    duration_s: T,
+    /// From 0 to T.
+    clock: Clock<T>,
 }
 
 impl<T: Real> Decay<T> {
     /// No difference.
     pub const NONE: Self = Self {
         coefficients: [zeros(); 3],
-        elapsed_s: T::ZERO,
-        duration_s: T::ZERO,
+        clock: Clock::ENDED,
     };
 
     /// From the difference and its first two derivatives by time, in `duration_s` > 0; over
@@ -37,37 +86,33 @@ impl<T: Real> Decay<T> {
         let (de, dde) = (de * duration_s, dde * (duration_s * duration_s));
         Self {
             coefficients: [e, e * three + de, e * six + de * three + dde * T::HALF],
-            elapsed_s: T::ZERO,
-            duration_s,
+            clock: Clock::new(duration_s),
         }
     }
 
     /// Whether there is a difference.
     #[inline(always)]
     pub fn lasts(&self) -> bool {
-        self.duration_s > T::ZERO
+        self.clock.runs()
     }
 
     /// No difference from now on.
     #[inline(always)]
     pub fn end(&mut self) {
-        self.duration_s = T::ZERO;
+        self.clock.end();
     }
 
     /// The next cycle, `interval_s` later.
     #[inline(always)]
     pub fn advance(&mut self, interval_s: T) {
-        self.elapsed_s += interval_s;
-        if self.elapsed_s >= self.duration_s {
-            self.duration_s = T::ZERO;
-        }
+        self.clock.advance(interval_s);
     }
 
     /// e, de/dt, d2e/dt2 of now. To be asked while it lasts.
     #[inline(never)]
     pub fn now(&self) -> [Vector3<T>; 3] {
-        let rate = T::ONE / self.duration_s;
-        let s = self.elapsed_s * rate;
+        let rate = T::ONE / self.clock.duration_s;
+        let s = self.clock.elapsed_s * rate;
         let left = T::ONE - s;
         let [a, b, c] = &self.coefficients;
         let (two, three, six) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(6.0));
