@@ -42,7 +42,7 @@ fri-m7 --check         the same by itself: trace as without a board, safe output
                        emergency stop and without a robot; with --serial the first
                        second over the serial port
 board-m7               the skeleton for the STM32H743: builds, code in ITCM, data in DTCM
-paced [--minutes M | --seconds S] [--load N]
+paced [--smoke] [--minutes M | --seconds S] [--load N]
                        hil-sim serve and firmware-host by the wall clock, both with
                        SCHED_FIFO, while N threads are kept busy; 10 minutes, 8 threads.
                        At most 0.1 % of the cycles may be without the client's answer in
