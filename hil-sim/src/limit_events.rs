@@ -74,13 +74,13 @@ impl LimitEvents {
         self.joints.resize(DOF, JointEvents::default());
         for (joint, (events, link)) in self.joints.iter_mut().zip(&arm.links).enumerate() {
             let side = limits.at_bound(joint);
-            if side == 0.0 {
+            if side == 0 {
                 continue;
             }
             let (q, dq) = (sample.state.q[joint], sample.state.dq[joint]);
             let [least, greatest] = link.position_range;
-            let way = if side > 0.0 { greatest - q } else { q - least };
-            let time = if dq * side > FAST * link.speed_limit {
+            let way = if side > 0 { greatest - q } else { q - least };
+            let time = if dq * f64::from(side) > FAST * link.speed_limit {
                 &mut events.at_speed_s
             } else if way < NEAR {
                 &mut events.at_range_s

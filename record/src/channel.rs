@@ -7,8 +7,8 @@ use controller_core::joint::DOF;
 pub enum Value {
     /// SI units.
     Number(f64),
-    /// A count, or a set as bits.
-    Count(u64),
+    /// A count, a sign, or a set as bits.
+    Count(i64),
     /// One word.
     Word(String),
     /// Nothing is known.

@@ -72,8 +72,8 @@ pub struct LevelSample {
 impl LimitSample {
     /// 1 where a joint (from 0) may not go further up, -1 further down, else 0.
     #[must_use]
-    pub fn at_bound(&self, joint: usize) -> f64 {
-        let end = |at: bool| f64::from(u8::from(at));
+    pub fn at_bound(&self, joint: usize) -> i8 {
+        let end = |at: bool| i8::from(at);
         let (least, greatest) = (self.status.at_least, self.status.at_greatest);
         end(greatest.contains(joint)) - end(least.contains(joint))
     }
@@ -90,7 +90,7 @@ pub const CHANNELS: &[Channel<Sample>] = &[
     Channel { columns: "r{joint}", unit: "Nm", meaning: "residual", place: Place::Both, values: |s, sink| numbers(s.residual.as_slice(), sink) },
     Channel { columns: "mode", unit: "", meaning: "number of the controller's mode: 0 running, 1 limited, 2 braking, 3 resting, 4 blind, 5 stopped; empty where it is not known", place: Place::File, values: |s, sink| sink(s.mode.map_or(Value::Empty, |mode| Value::Count(mode.number().into()))) },
     Channel { columns: "conditioning{row}", unit: "1/sqrt(kg)", meaning: "abs R_kk per task row; within limits root of z per direction of its level", place: Place::Series, values: |s, sink| numbers(&rows(&s.conditioning), sink) },
-    Channel { columns: "at_bound{joint}", unit: "", meaning: "1 where a joint may not go further up, -1 further down, else 0; empty without the law within limits", place: Place::File, values: |s, sink| (0..DOF).for_each(|i| sink(s.limits.as_ref().map_or(Value::Empty, |l| Value::Number(l.at_bound(i))))) },
+    Channel { columns: "at_bound{joint}", unit: "", meaning: "1 where a joint may not go further up, -1 further down, else 0; empty without the law within limits", place: Place::File, values: |s, sink| (0..DOF).for_each(|i| sink(s.limits.as_ref().map_or(Value::Empty, |l| Value::Count(l.at_bound(i).into())))) },
     Channel { columns: "pivots", unit: "", meaning: "exchanges that the projection onto the bounds took", place: Place::File, values: |s, sink| sink(s.limits.as_ref().map_or(Value::Empty, |l| Value::Count(l.status.pivots.into()))) },
     Channel { columns: "null_share", unit: "", meaning: "share of what it asks for that the null space got", place: Place::Series, values: |s, sink| sink(Value::Number(s.limits.as_ref().map_or(f64::NAN, |l| l.null_share))) },
     Channel { columns: "null_power", unit: "W", meaning: "what the bounds do on the null-space motion", place: Place::Series, values: |s, sink| sink(Value::Number(s.limits.as_ref().map_or(f64::NAN, |l| l.null_power))) },

@@ -33,7 +33,7 @@ fn of_step(cycle: &CycleReport, pick: fn(&Step<f64>) -> &JointVector<f64>, sink:
     }
 }
 
-fn fault(cycle: &CycleReport) -> u64 {
+fn fault(cycle: &CycleReport) -> i64 {
     let fault = cycle.step.and_then(|step| step.status.fault);
     fault.map_or(0, |fault| fault.kind.number().into())
 }

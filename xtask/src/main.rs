@@ -46,7 +46,8 @@ paced [--smoke] [--minutes M | --seconds S] [--load N]
                        hil-sim serve and firmware-host by the wall clock, both with
                        SCHED_FIFO, while N threads are kept busy; 10 minutes, 8 threads.
                        At most 0.1 % of the cycles may be without the client's answer in
-                       time, its own p99.9 below 1 ms
+                       time, its own p99.9 below 1 ms. --smoke: 15 s, 1 thread, and a PC
+                       that cannot is no failure, but said
 lines [REVISION]       lines of code, and of documentation per public item, by package
 missing-m7             prints what has to be installed for the first three, exit code 2 if anything
 
