@@ -128,6 +128,8 @@ enum {
   STRATUM_LIMIT_BOUNDED = 104,
   // Limit: bounds of the joints kept by a cut: too many at once to share out.
   STRATUM_LIMIT_UNRESOLVED = 105,
+  // Limit: a level off its target in a singularity that no free motion leads out of.
+  STRATUM_LIMIT_STUCK = 106,
 };
 
 // What a level tracks.
@@ -497,6 +499,8 @@ typedef struct StratumStatus {
   uint32_t at_greatest;
   // STRATUM_LIMIT_UNRESOLVED: 1 where it is so.
   uint32_t unresolved;
+  // STRATUM_LIMIT_STUCK: levels.
+  uint32_t stuck;
   // Exchanges that the projection onto the bounds of the joints took, 0 to 12.
   uint32_t pivots;
 } StratumStatus;

@@ -397,6 +397,7 @@ pub unsafe extern "C" fn stratum_status(
             at_least,
             at_greatest,
             unresolved,
+            stuck,
             pivots,
         } = held.step.status;
         let mut answer = StratumStatus {
@@ -412,6 +413,7 @@ pub unsafe extern "C" fn stratum_status(
             at_least: u32::from(at_least.0),
             at_greatest: u32::from(at_greatest.0),
             unresolved: u32::from(unresolved),
+            stuck: u32::from(stuck.0),
             pivots: u32::from(pivots),
             ..StratumStatus::default()
         };

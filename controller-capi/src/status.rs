@@ -46,6 +46,8 @@ pub struct StratumStatus {
     pub at_greatest: u32,
     /// STRATUM_LIMIT_UNRESOLVED: 1 where it is so.
     pub unresolved: u32,
+    /// STRATUM_LIMIT_STUCK: levels.
+    pub stuck: u32,
     /// Exchanges that the projection onto the bounds of the joints took, 0 to 12.
     pub pivots: u32,
 }

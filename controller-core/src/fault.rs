@@ -49,6 +49,8 @@ macro_rules! numbers {
                     "a joint at what its range or its speed limit allows";
                 Unresolved = 105, "unresolved", "UNRESOLVED",
                     "bounds of the joints kept by a cut: too many at once to share out";
+                Stuck = 106, "stuck", "STUCK",
+                    "a level off its target in a singularity that no free motion leads out of";
             }
         }
     };
@@ -403,6 +405,8 @@ pub struct Status {
     pub at_greatest: IndexSet,
     /// Whether [`LimitKind::Unresolved`].
     pub unresolved: bool,
+    /// Levels of [`LimitKind::Stuck`].
+    pub stuck: IndexSet,
     /// Exchanges that the projection onto the bounds took, at most
     /// [`PIVOTS`](crate::ranges::PIVOTS); 0 where no bound was in the way.
     pub pivots: u8,
@@ -424,6 +428,7 @@ impl Status {
         at_least: IndexSet::NONE,
         at_greatest: IndexSet::NONE,
         unresolved: false,
+        stuck: IndexSet::NONE,
         pivots: 0,
     };
 
@@ -439,7 +444,8 @@ impl Status {
             | self.shaped.0
             | self.scaled.0
             | self.at_least.0
-            | self.at_greatest.0;
+            | self.at_greatest.0
+            | self.stuck.0;
         Self {
             mode: if sets != 0 || self.unresolved {
                 Mode::Limited
@@ -473,6 +479,7 @@ impl Status {
                 IndexSet(self.at_least.0 | self.at_greatest.0),
             ),
             (LimitKind::Unresolved, IndexSet(u8::from(self.unresolved))),
+            (LimitKind::Stuck, self.stuck),
         ];
         active
             .into_iter()

@@ -120,6 +120,32 @@ pub const JOINT_LIMIT_RANGE: [f64; 2] = [1e-2, 1e5];
 /// kappa \[1/s\]: how fast null-space motion decays where a direction is fully released.
 pub const RELEASE_DAMPING: f64 = 20.0;
 
+/// Acceleration that bends a straight arm \[rad/s2\]: where it comes and goes the torque of an
+/// elbow changes by less than 1 Nm, and against kappa it reaches 0.025 rad/s: a degree, from
+/// where on a level drives by itself, in 0.7 s.
+pub const BEND_ACCELERATION: f64 = 0.5;
+
+/// From this error along a lost direction on \[m\] a straight arm is bent, fully so from twice
+/// that: below, friction and the last bit of the way to a target at the reach of the arm.
+pub const BEND_ERROR: f64 = 5e-3;
+
+/// Least that bending a joint must bring a level nearer \[m/rad2\]: below, it is rounding or a
+/// joint that does not bend the arm.
+pub const BEND_CURVATURE_MIN: f64 = 0.01;
+
+/// Least room of a joint on the side that it is bent to \[rad\]: with less the arm stays where its
+/// level is released.
+pub const BEND_ROOM_MIN: f64 = 0.1;
+
+/// Rounds of the power method for the motion that bends it.
+pub const BEND_ROUNDS: u8 = 4;
+
+/// So far to a side of the straight posture q_d decides \[rad\], or the room in the range.
+pub const BEND_TOWARDS: f64 = 0.0175;
+
+/// An arm that is bent twice so far to the side that is not preferred goes on there \[rad\].
+pub const BEND_PREFERRED: f64 = 0.0044;
+
 /// dev0 \[m/s2\]: a level that the bounds of the joints disturb by so much gives way twice as far.
 pub const SOFTENING_DISTURBANCE: f64 = 2.0;
 

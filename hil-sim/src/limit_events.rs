@@ -50,6 +50,10 @@ pub struct LevelEvents {
     pub degraded_s: f64,
     /// How long a direction was given to the levels below \[s\].
     pub released_s: f64,
+    /// How long no free motion led out of it \[s\].
+    pub stuck_s: f64,
+    /// Its error where it is so at the end \[m\], or \[rad\].
+    pub stuck_at_end: Option<f64>,
     /// How long its command was shortened \[s\].
     pub shaped_s: f64,
     /// How long it got less than it asked the joints for \[s\].
@@ -110,6 +114,22 @@ impl LimitEvents {
         !self.joints.is_empty()
     }
 
+    /// One sentence per level that is stuck at the end.
+    #[must_use]
+    pub fn unreached(&self, levels: &[(String, bool)]) -> Vec<String> {
+        let events = (1..).zip(self.levels.iter().zip(levels));
+        events
+            .filter_map(|(number, (events, (name, rotates)))| {
+                let error = 1e3 * events.stuck_at_end?;
+                let unit = if *rotates { "mrad" } else { "mm" };
+                Some(format!(
+                    "level {number} ({name}) ends {error:.3} {unit} off its target, stuck in a \
+                     singularity that no free motion leads out of"
+                ))
+            })
+            .collect()
+    }
+
     /// One sentence per kind of event.
     #[must_use]
     pub fn sentences(&self, arm: &ArmParameters, levels: &[(String, bool)]) -> Vec<String> {
@@ -161,6 +181,8 @@ impl LevelEvents {
         }
         self.degraded_s += time(status.degraded);
         self.released_s += time(status.released);
+        self.stuck_s += time(status.stuck);
+        self.stuck_at_end = status.stuck.contains(level).then_some(shown.error);
         self.shaped_s += time(status.shaped);
         self.scaled_s += time(status.scaled);
         self.disturbed_s += if disturbed { cycle_s } else { 0.0 };
@@ -180,6 +202,7 @@ impl LevelEvents {
         for (time, what) in [
             (self.degraded_s, "near a singularity"),
             (self.released_s, "in a singularity"),
+            (self.stuck_s, "stuck there"),
             (self.shaped_s, "with a shortened command"),
             (self.disturbed_s, "disturbed by the bounds of joints"),
         ] {

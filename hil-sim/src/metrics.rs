@@ -275,6 +275,12 @@ pub struct Metrics {
     pub(crate) cycles: usize,
 }
 
+/// Levels with whether they rotate.
+fn names(levels: &[LevelSpec]) -> Vec<(String, bool)> {
+    let name = |level: &LevelSpec| (level.label(), level.task == TaskSpec::Orientation);
+    levels.iter().map(name).collect()
+}
+
 impl Metrics {
     /// No cycle yet, of `arm` in cycles of `cycle_s` \[s\].
     #[must_use]
@@ -413,14 +419,16 @@ impl Metrics {
         self.levels.iter().zip(levels).map(figures).collect()
     }
 
+    /// Levels that are stuck at the end, in sentences.
+    #[must_use]
+    pub fn unreached(&self, levels: &[LevelSpec]) -> Vec<String> {
+        self.limit_events.unreached(&names(levels))
+    }
+
     /// What the law within limits did, in sentences.
     #[must_use]
     pub fn limit_sentences(&self, levels: &[LevelSpec]) -> Vec<String> {
-        let names: Vec<_> = levels
-            .iter()
-            .map(|level| (level.label(), level.task == TaskSpec::Orientation))
-            .collect();
-        self.limit_events.sentences(&self.arm, &names)
+        self.limit_events.sentences(&self.arm, &names(levels))
     }
 
     /// The observer's figures.

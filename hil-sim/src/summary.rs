@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use cell::scenario::{Metric, Scenario};
+use cell::scenario::{LevelSpec, Metric, Scenario};
 
 use crate::after_fault::{AfterFault, Ending};
 use crate::limit_events::LimitEvents;
@@ -23,7 +23,7 @@ pub enum Verdict {
     /// No limit was exceeded, and something that was to be judged did not come.
     #[serde(rename = "not judged")]
     NotJudged,
-    /// A limit was exceeded, or a joint left its range.
+    /// A limit was exceeded, a joint left its range, or a level is stuck at the end.
     Fail,
     /// Safety stopped the run, or someone.
     Stopped,
@@ -121,7 +121,7 @@ impl Summary {
         }
         let (verdict, reason) = match ending.stop() {
             None => {
-                let failures = failures(&acceptance, metrics);
+                let failures = failures(&acceptance, metrics, &scenario.levels);
                 let missing = missing(scenario, &acceptance, metrics, &levels);
                 verdict(&failures, &missing)
             }
@@ -228,8 +228,8 @@ fn judge(scenario: &Scenario, conditions: &Conditions, levels: &[LevelFigures]) 
         .collect()
 }
 
-/// Limits that were exceeded, joints that left their range.
-fn failures(acceptance: &[Acceptance], metrics: &Metrics) -> Vec<String> {
+/// Limits that were exceeded, joints that left their range, levels that are stuck.
+fn failures(acceptance: &[Acceptance], metrics: &Metrics, levels: &[LevelSpec]) -> Vec<String> {
     let failed = acceptance.iter().filter(|limit| limit.pass == Some(false));
     failed
         .map(|limit| {
@@ -240,6 +240,7 @@ fn failures(acceptance: &[Acceptance], metrics: &Metrics) -> Vec<String> {
             )
         })
         .chain(metrics.beyond().map(|joint| joint.to_string()))
+        .chain(metrics.unreached(levels))
         .collect()
 }
 

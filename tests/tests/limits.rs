@@ -5,3 +5,5 @@
 mod equality;
 #[path = "limits/projection.rs"]
 mod projection;
+#[path = "limits/way_out.rs"]
+mod way_out;

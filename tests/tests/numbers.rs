@@ -12,7 +12,7 @@ const FAULTS: RangeInclusive<u32> = 32..=95;
 const LIMITS: RangeInclusive<u32> = 96..=159;
 
 /// Published numbers keep their names for ever: this list only grows.
-const PUBLISHED: [(u32, &str); 13] = [
+const PUBLISHED: [(u32, &str); 14] = [
     (32, "implausible"),
     (33, "non_finite_torque"),
     (34, "wrong_target"),
@@ -26,6 +26,7 @@ const PUBLISHED: [(u32, &str); 13] = [
     (103, "scaled"),
     (104, "bounded"),
     (105, "unresolved"),
+    (106, "stuck"),
 ];
 
 /// A row of the registry.
@@ -124,6 +125,7 @@ fn a_status_names_its_limits_by_the_registry() {
         scaled: IndexSet(128),
         at_least: IndexSet(1),
         unresolved: true,
+        stuck: IndexSet(1),
         ..with(5, 3, 1, 128)
     };
     assert_eq!(

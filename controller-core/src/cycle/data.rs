@@ -16,6 +16,7 @@ use crate::law::limits::bounds::AccelerationBounds;
 use crate::law::limits::motion::WhitenedMotion;
 use crate::law::limits::projection::Projection;
 use crate::law::limits::spectrum::Spectrum;
+use crate::law::limits::way_out::WayOut;
 use crate::law::limits::wish::Wish;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::PostureIntegral;
@@ -62,6 +63,8 @@ pub struct Data<T: Real> {
     pub posture: JointVector<T>,
     /// Task accelerations and null-space force, of the exact law.
     pub control: Control<T>,
+    /// What bends a straight arm.
+    pub way_out: WayOut<T>,
     /// What levels and null space ask the joints for, of the law within limits.
     pub wish: Wish<T>,
     /// What acceleration each joint may have.
@@ -104,6 +107,7 @@ impl<T: Real> Data<T> {
             motion: MotionSplit::new(),
             posture: zeros(),
             control: Control::new(),
+            way_out: WayOut::new(),
             wish: Wish::new(),
             bounds: AccelerationBounds::new(),
             projection: Projection::new(),
@@ -137,6 +141,7 @@ impl<T: Real> Data<T> {
         status.scaled = wish.scaled;
         [status.at_least, status.at_greatest] = projection.at_bound;
         status.unresolved = projection.unresolved;
+        status.stuck = self.way_out.stuck;
         status.pivots = projection.pivots;
     }
 

@@ -11,6 +11,7 @@ use crate::joint::{DOF, JointState, all_finite};
 use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
 use crate::law::limits::projection::Wished;
+use crate::law::limits::way_out::Straight;
 use crate::law::limits::wish::Ask;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::Posture;
@@ -352,12 +353,28 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let null_force = controller.compliance.force(
+    let mut null_force = controller.compliance.force(
         &data.dynamics,
         &data.rows,
         &data.motion,
         &(data.posture - data.joints.q),
     );
+    data.way_out.update(&Straight {
+        levels: &controller.levels,
+        bounds: &controller.bounds,
+        kinematics: &data.kinematics,
+        dynamics: &data.dynamics,
+        rows: &data.rows,
+        spectrum: &data.spectrum,
+        motion: &data.whitened_motion,
+        q: &data.joints.q,
+        null_force: &null_force,
+        residual: &data.observer.residual,
+        posture: &data.posture,
+    });
+    if data.spectrum.released.any() {
+        null_force += data.dynamics.mass_matrix * data.way_out.acceleration;
+    }
     data.wish.update(&Ask {
         levels: &controller.levels,
         bounds: &controller.bounds,

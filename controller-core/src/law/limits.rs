@@ -7,6 +7,7 @@
 //! ```text
 //! spectrum    A_i = J_i L^-T, what the levels above leave of it, its directions and mobilities z
 //! motion      dq split by the spectrum: n, w, F
+//! way out     of an arm that is straight: what bends it, through the null space
 //! wish        what levels and null space ask for, scaled to what joints can do: a*
 //! bounds      lo <= a <= hi of every joint, from its range and its speed limit
 //! projection  a: the nearest to a* within the bounds, nearest for the upper levels first
@@ -19,6 +20,7 @@ pub mod projection;
 mod rule;
 pub mod spectrum;
 mod tableau;
+pub mod way_out;
 pub mod wish;
 
 pub use rule::joint_limits;

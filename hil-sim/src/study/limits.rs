@@ -3,7 +3,7 @@
 //!
 //! - [`parameters`]: what is drawn for a run; [`case`](mod@case): a run as data; [`set`]: the sets of runs;
 //! - [`ground`]: what an arm can reach; [`passes`], [`wrist`], [`random`], [`push`], [`saturation`],
-//!   [`ordered`]: the runs; [`import`]: runs from files;
+//!   [`straight`], [`ordered`]: the runs; [`import`]: runs from files;
 //! - [`run`]: one run in the closed loop; [`outcome`]: its figures; [`truth`]: where levels really
 //!   are;
 //! - [`acceptance`]: what must hold; [`table`]: figures and acceptance for people; [`jobs`]: all
@@ -23,6 +23,7 @@ pub mod random;
 pub mod run;
 pub mod saturation;
 pub mod set;
+pub mod straight;
 pub mod table;
 pub mod truth;
 pub mod wrist;

@@ -1,8 +1,10 @@
 //! A fifth of every set against the limits of the whole.
 
 use cell::names::{Named, PlantKind};
+use cell::scenario::EquippedArm;
 use hil_sim::study::limits::acceptance::{Criterion, judge};
 use hil_sim::study::limits::jobs::{Plan, SetOutcome};
+use hil_sim::study::limits::outcome::Outcome;
 use hil_sim::study::limits::run::{Law, Precision};
 use hil_sim::study::limits::set::Set;
 
@@ -56,6 +58,83 @@ fn single_runs_keep_the_limits() {
             let missed = missed(&outcome, &plan);
             assert!(missed.is_empty(), "{} {missed:?}", precision.name());
         }
+    }
+}
+
+/// Straight and nearly straight, alone and with levels below.
+#[test]
+fn straight_arms_leave() {
+    for (plant, precision) in [
+        (PlantKind::Ideal, Precision::F64),
+        (PlantKind::Ideal, Precision::F32),
+        (PlantKind::Realistic, Precision::F64),
+    ] {
+        let plan = Plan {
+            plant,
+            precision,
+            ..plan(&[Set::Straight])
+        };
+        let missed = missed(&made(&plan)[0], &plan);
+        assert!(missed.is_empty(), "{} {missed:?}", plant.name());
+    }
+}
+
+/// The exactly straight runs of an arm.
+fn exactly_straight(arm: &str, plant: PlantKind) -> Vec<Outcome> {
+    let plan = Plan {
+        arm: EquippedArm::new(arm, None, None).expect("a table"),
+        plant,
+        runs: Some(6),
+        ..plan(&[Set::Straight])
+    };
+    made(&plan).remove(0).within_limits
+}
+
+/// Which joint bends follows from the arm: elbows with and without offsets, ranges to one side.
+#[test]
+fn every_arm_leaves_that_has_a_way_out() {
+    for arm in [
+        "iiwa_7",
+        "iiwa_14",
+        "panda",
+        "panda_identified",
+        "fr3",
+        "gen3",
+    ] {
+        for plant in [PlantKind::Ideal, PlantKind::Realistic] {
+            let runs = exactly_straight(arm, plant);
+            for run in runs.iter().filter(|run| run.levels.len() == 1) {
+                assert_eq!(
+                    (&run.stop, run.limited.stuck),
+                    (&None, 0),
+                    "{arm} {}",
+                    run.run
+                );
+                let back = run.levels[0].back.expect("a way back");
+                // Friction is what is left, as with the LWR.
+                let most = if plant == PlantKind::Ideal { 0.1 } else { 2.0 };
+                assert!(back < most, "{arm} {}: {back} mm", run.run);
+                // Drives of up to 320 Nm, with noise in proportion.
+                assert!(run.step.nm < 5.0, "{arm} {}: {:?}", run.run, run.step);
+            }
+        }
+    }
+}
+
+/// Joints 2 and 4 of this arm stand across each other where it is straight: each is needed to keep
+/// the flange from going aside, and neither is left to bend. That is said in every cycle.
+#[test]
+fn an_arm_without_a_way_out_says_so() {
+    for run in exactly_straight("openarm_v20_right", PlantKind::Ideal) {
+        // From 5 mm on: the quintic of 4 s and 50 mm is there after 1.3 s.
+        let cycles = run.cycles as f64;
+        assert!(
+            run.limited.stuck as f64 > 0.75 * cycles,
+            "{}: {}",
+            run.run,
+            run.limited.stuck
+        );
+        assert!(run.step.nm < 0.2, "{}: {:?}", run.run, run.step);
     }
 }
 

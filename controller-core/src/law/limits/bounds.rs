@@ -69,6 +69,14 @@ impl<T: Real> JointBounds<T> {
         }
     }
 
+    /// How far a joint at `q` \[rad\] is from the ends of its range less the margin \[rad\]: way
+    /// down and way up, negative beyond.
+    #[inline(always)]
+    pub(super) fn room(&self, joint: usize, q: T) -> [T; 2] {
+        let [low, high] = &self.ends;
+        [q - low[joint], high[joint] - q]
+    }
+
     /// Largest acceleration \[rad/s2\] of a joint towards an end `distance` \[rad\] away that
     /// it approaches at `speed` \[rad/s\].
     #[inline(always)]

@@ -29,6 +29,13 @@ const BACK: f64 = 0.1;
 pub const SMALL_STEP_NM: f64 = 4.0;
 const SMALL_STEP_SHARE: f64 = 0.8;
 
+/// Steps of a torque by which a straight arm may leave \[Nm\], on the ideal plant and on the realistic
+/// one, whose noise alone makes 2.2 Nm in an arm that is straight.
+const STRAIGHT_STEP_NM: [f64; 2] = [2.0, 3.0];
+
+/// A level is back below this on the realistic plant \[mm\]: what friction costs a flange.
+const STRAIGHT_BACK_MM: f64 = 2.0;
+
 /// What of a leak is rounding \[m/s2\], in double precision.
 const LEAK: f64 = 1e-11;
 
@@ -106,6 +113,10 @@ pub fn judge(of_set: &SetOutcome, plan: &Plan) -> Vec<Criterion> {
             let largest = level_1(runs, |level| level.max);
             vec![below("level 1, largest error mm", largest, 0.6)]
         }
+        (PlantKind::Ideal, Set::Straight) => straight(runs, STRAIGHT_STEP_NM[0], BACK),
+        (PlantKind::Realistic, Set::Straight) => {
+            straight(runs, STRAIGHT_STEP_NM[1], STRAIGHT_BACK_MM)
+        }
         (PlantKind::Realistic, Set::Random) => vec![outside(runs)],
         (PlantKind::Realistic, _) => Vec::new(),
     }
@@ -164,6 +175,16 @@ fn wrist(runs: &[Outcome]) -> Vec<Criterion> {
         stops(runs),
         below("torque step Nm, largest", step, 3.0),
         back(runs),
+    ]
+}
+
+fn straight(runs: &[Outcome], step_nm: f64, back_mm: f64) -> Vec<Criterion> {
+    let step = largest(runs, |run| run.step.nm);
+    let worst = level_1(runs, |level| level.back.unwrap_or(f64::INFINITY));
+    vec![
+        stops(runs),
+        below("torque step Nm, largest", step, step_nm),
+        below("level 1, error mm 1 s after the way back", worst, back_mm),
     ]
 }
 

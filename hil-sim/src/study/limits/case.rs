@@ -91,7 +91,11 @@ impl Case {
     /// The same with the targets that `path` gives for the times of `duration_s` \[s\], one for
     /// every level.
     #[must_use]
-    pub fn following(mut self, duration_s: f64, path: impl Fn(f64) -> Vec<Target<f64>>) -> Self {
+    pub fn following(
+        mut self,
+        duration_s: f64,
+        mut path: impl FnMut(f64) -> Vec<Target<f64>>,
+    ) -> Self {
         let cycles = (duration_s / self.cycle_s).round() as usize;
         self.targets = (0..cycles)
             .flat_map(|cycle| path(cycle as f64 * self.cycle_s))

@@ -26,11 +26,20 @@ pub struct Ground {
     pub up: Vector3<f64>,
     /// Farthest that the flange comes from the shoulder \[m\].
     pub reach: f64,
+    /// A posture in which it is there \[rad\].
+    pub straight: JointVector<f64>,
 }
 
 /// Rounds over the joints, and places of each that are looked at, in the search for the reach.
 const ROUNDS: usize = 4;
 const PLACES: usize = 25;
+
+/// A posture is not farther than another by less \[m\].
+const NO_FARTHER: f64 = 1e-4;
+
+/// Rounds of parabolas over the joints, and half their width \[rad\].
+const PARABOLAS: usize = 200;
+const PARABOLA: f64 = 1e-3;
 
 impl Ground {
     /// Of an arm.
@@ -54,27 +63,51 @@ impl Ground {
             axis,
             up,
             reach: 0.0,
+            straight: JointVector::zeros(),
         };
-        ground.reach = ground.farthest();
+        ground.straight = ground.farthest();
+        ground.reach = ground.distance(&ground.straight);
         ground
     }
 
-    /// The farthest flange from some postures, by a walk along one joint after the other in
-    /// narrowing steps.
-    fn farthest(&self) -> f64 {
-        let mut most = 0.0f64;
+    /// A posture with the farthest flange, from some others by a walk along one joint after the
+    /// other in narrowing steps.
+    fn farthest(&self) -> JointVector<f64> {
+        let mut best = self.of_range(&[0.0; DOF]);
         for start in [0.0, -0.5, 0.5] {
             let mut q = self.of_range(&[start; DOF]);
             let mut width = 1.0;
             for _ in 0..ROUNDS {
                 for joint in 1..DOF {
                     q = self.walked(&q, joint, width);
-                    most = most.max(self.distance(&q));
                 }
                 width *= 0.2;
             }
+            if self.distance(&q) > self.distance(&best) + NO_FARTHER {
+                best = q;
+            }
         }
-        most
+        self.stretched(best)
+    }
+
+    /// The same as exactly as can be: by parabolas along one joint after the other.
+    fn stretched(&self, mut q: JointVector<f64>) -> JointVector<f64> {
+        for joint in (1..DOF).cycle().take(PARABOLAS * DOF) {
+            let [min, max] = self.arm.parameters.links[joint].position_range;
+            let at = |by: f64| {
+                let mut tried = q;
+                tried[joint] += by;
+                self.distance(&tried)
+            };
+            let [before, here, after] = [at(-PARABOLA), at(0.0), at(PARABOLA)];
+            let bow = 2.0 * here - before - after;
+            // Joints that only turn the straight arm have none.
+            if bow > PARABOLA * PARABOLA * 1e-3 {
+                let by = PARABOLA * (after - before) / (2.0 * bow);
+                q[joint] = (q[joint] + by).clamp(min, max);
+            }
+        }
+        q
     }
 
     /// The posture with one joint where the flange is farthest.

@@ -100,6 +100,7 @@ pub struct LimitedCycles {
     pub scaled: usize,
     pub bounded: usize,
     pub unresolved: usize,
+    pub stuck: usize,
 }
 
 impl LimitedCycles {
@@ -115,6 +116,7 @@ impl LimitedCycles {
         self.scaled += on(status.scaled);
         self.bounded += usize::from(status.at_least.any() || status.at_greatest.any());
         self.unresolved += usize::from(status.unresolved);
+        self.stuck += on(status.stuck);
     }
 }
 

@@ -5,7 +5,7 @@ use cell::names::Named;
 
 use super::case::Case;
 use super::ground::Ground;
-use super::{ordered, passes, push, random, saturation, wrist};
+use super::{ordered, passes, push, random, saturation, straight, wrist};
 
 /// A set of runs of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +24,8 @@ pub enum Set {
     Give,
     /// Torque at its limits.
     Saturation,
+    /// A straight arm that is pulled back.
+    Straight,
 }
 
 impl Named for Set {
@@ -36,6 +38,7 @@ impl Named for Set {
         ("push", Self::Push),
         ("give", Self::Give),
         ("saturation", Self::Saturation),
+        ("straight", Self::Straight),
     ];
 }
 
@@ -53,6 +56,7 @@ impl Set {
             Self::Random => 200,
             Self::Push => 24,
             Self::Give | Self::Saturation => 1,
+            Self::Straight => straight::count(),
         }
     }
 
@@ -65,7 +69,7 @@ impl Set {
     /// Whether it is for any arm; the others name postures or points of the LWR.
     #[must_use]
     pub fn is_for_any_arm(self) -> bool {
-        matches!(self, Self::Pass | Self::Random)
+        matches!(self, Self::Pass | Self::Random | Self::Straight)
     }
 
     /// The run `number` (from 0).
@@ -81,6 +85,7 @@ impl Set {
             Self::Push => push::hard(ground, number),
             Self::Give => push::soft(ground),
             Self::Saturation => saturation::jumps(ground),
+            Self::Straight => straight::pull(ground, number),
         }
     }
 }

@@ -71,13 +71,14 @@ const COUNTS: [(&str, Count); 5] = [
 type Cycles = fn(&Outcome) -> usize;
 
 /// Cycles that are counted.
-const CYCLES: [(&str, Cycles); 9] = [
+const CYCLES: [(&str, Cycles); 10] = [
     ("cycles degraded", |run| run.limited.degraded),
     ("cycles released", |run| run.limited.released),
     ("cycles shaped", |run| run.limited.shaped),
     ("cycles scaled", |run| run.limited.scaled),
     ("cycles bounded", |run| run.limited.bounded),
     ("cycles unresolved", |run| run.limited.unresolved),
+    ("cycles stuck", |run| run.limited.stuck),
     ("cycles with a torque cut", |run| run.limited.saturated),
     ("cycles rate limited", |run| run.limited.torque_rate),
     ("cycles joining", |run| run.limited.joining),
