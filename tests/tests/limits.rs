@@ -5,5 +5,7 @@
 mod equality;
 #[path = "limits/projection.rs"]
 mod projection;
+#[path = "limits/rule.rs"]
+mod rule;
 #[path = "limits/way_out.rs"]
 mod way_out;

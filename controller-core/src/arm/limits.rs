@@ -9,7 +9,8 @@ pub struct JointLimits {
     /// alpha \[rad/s2\]: largest acceleration that the law asks of a joint. It is part of how the
     /// arm feels: pushed harder, it resists.
     pub acceleration: [f64; DOF],
-    /// A \[rad/s2\]: with so much a joint brakes before the end of its range.
+    /// A \[rad/s2\]: with so much a joint brakes before the end of its range; less where its
+    /// [`EndApproach`](crate::arm::EndApproach) asks for it.
     pub braking: [f64; DOF],
     /// kv \[1/s\]: how fast the speed of a joint comes to what it may be.
     pub speed_gain: [f64; DOF],

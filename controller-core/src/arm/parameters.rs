@@ -70,7 +70,8 @@ impl Friction {
 }
 
 /// A bound of the speed that depends on the position, as the FR3 has it: towards an end at
-/// most -`margin` + sqrt(2 `deceleration` x the way to that end).
+/// most -`margin` + sqrt(2 `deceleration` x the way to that end). The law within limits brakes
+/// early enough for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndApproach {
     /// Speed that is taken off \[rad/s\].

@@ -214,7 +214,10 @@ fn a_worse_run_is_not_accepted() {
             worse(|run| run.stop = Some("a fault".into())),
         ),
         ("runs beyond a range", worse(|run| run.beyond_deg = 0.1)),
-        ("speed, of its limit", worse(|run| run.speed_share = 1.1)),
+        (
+            "speed, of its limit",
+            worse(|run| run.speed_shares[0] = 1.1),
+        ),
         ("torque step Nm, largest", worse(|run| run.step.nm = 40.0)),
         (
             "cycles with a torque cut",

@@ -1,15 +1,31 @@
 //! Limits of the joints of an arm that brings none of its own.
 //!
 //! ```text
-//! kv    = 1.5 F_c / (M_jj,max x 1 rad/s), at least 25 1/s    a joint that brakes overcomes its
-//!                                                            friction, where known, else 1 % of
-//!                                                            its torque
 //! alpha = 0.42 kv V, at most what half of the torque accelerates
-//! A     = 4.4 1/s x V, at most 0.4 alpha
+//! kv    = 1.5 F_c / (M_jj x 1 rad/s), at least 25 1/s    a joint that brakes overcomes its
+//!                                                        friction, where known, else 1 % of
+//!                                                        its torque
+//! A     = 4.4 1/s x V, at most 0.4 alpha                 less where the speed limit depends on
+//!                                                        the way to the end
 //! ```
+//!
+//! with the largest M_jj of the ranges. At its bound the acceleration of joint j changes by up to
+//! kv alpha in a second, and with it the torque of joint i by |M_ij| kv alpha, at most
+//! (M_ii)^1/2 s_j, s_j = kv alpha (M_jj)^1/2. Two bounds follow:
+//!
+//! ```text
+//! s_j  <= half of the largest s that joints have with kv = 25 1/s      of joints with a larger kv:
+//!                                                                      a light joint does not
+//!                                                                      shake the heavy ones
+//! (sum of s_j^2)^1/2 (M_ii)^1/2 <= 0.9 of the torque rate of joint i   of all i: where joints swing
+//!                                                                      independently their torques
+//!                                                                      follow
+//! ```
+//!
+//! The first one bounds kv, the second one scales all alpha by one share.
 
 use crate::arm::limits::JointLimits;
-use crate::arm::{ArmModel, ArmParameters};
+use crate::arm::{ArmModel, ArmParameters, LinkParameters};
 use crate::joint::{DOF, zeros};
 use crate::law::sampling::{posture_ranges, set_mass_matrix};
 use crate::real::Real;
@@ -25,6 +41,16 @@ const POSITION_SHARE: f64 = 0.48;
 
 /// Largest A as a share of alpha.
 const BRAKING_SHARE: f64 = 0.4;
+
+/// alpha as a share of what kv makes of the speed limit, and of the torque limit.
+const SWING: f64 = 0.42;
+const STRONG_SHARE: f64 = 0.5;
+
+/// Share of the largest s that joints with a larger kv than the least have at most.
+const LIGHT_SHARE: f64 = 0.5;
+
+/// Share of the torque rate that bounds may use; the rest is for gravity and references.
+const RATE_SHARE: f64 = 0.9;
 
 /// k \[1/s\], margin \[rad\] and share of the speed limit.
 const POSITION_GAIN: f64 = 12.0;
@@ -58,7 +84,40 @@ pub fn joint_limits<T: Real>(
     for (braking, alpha) in limits.braking.iter_mut().zip(&limits.acceleration) {
         *braking = braking.min(BRAKING_SHARE * alpha);
     }
+    for (i, link) in parameters.links.iter().enumerate() {
+        limits.braking[i] = limits.braking[i].min(approach_braking(link, &limits));
+    }
     limits
+}
+
+/// Speeds of a joint at which its ways to the end are compared.
+const SPEEDS: usize = 32;
+
+/// Largest A \[rad/s2\] with which v_p keeps `speed_share` of a speed limit that depends on the
+/// way to the end.
+///
+/// A joint that has v of it left is c = (v + m)^2 / 2D from the end of that limit, less what the
+/// margin adds. It needs v_p^2/2A + A/2k^2 from 2 d0 on, v_p/k before, with v_p the share of v: not
+/// more than c up to A = v_p^2 / (c + (c^2 - v_p^2/k^2)^1/2).
+fn approach_braking(link: &LinkParameters, limits: &JointLimits) -> f64 {
+    let Some(approach) = &link.end_approach else {
+        return f64::INFINITY;
+    };
+    let ([start, end], [least, greatest]) = (approach.ends, link.position_range);
+    let added = limits.margin + (least - start).min(end - greatest);
+    let mut most = f64::INFINITY;
+    for place in 1..=SPEEDS {
+        let left = link.speed_limit * (place as f64 / SPEEDS as f64);
+        let braked = left + approach.margin;
+        let way = braked * braked / (2.0 * approach.deceleration) - added;
+        let speed = limits.speed_share * left;
+        let shortest = speed / limits.position_gain;
+        if way > shortest {
+            let root = libm::sqrt(way * way - shortest * shortest);
+            most = most.min(speed * speed / (way + root));
+        }
+    }
+    most
 }
 
 fn by_rule(parameters: &ArmParameters, inertias: &[f64; DOF]) -> JointLimits {
@@ -70,19 +129,53 @@ fn by_rule(parameters: &ArmParameters, inertias: &[f64; DOF]) -> JointLimits {
         margin: MARGIN,
         speed_share: SPEED_SHARE,
     };
-    for (i, (link, &inertia)) in parameters.links.iter().zip(inertias).enumerate() {
-        let friction = if link.friction.coulomb > 0.0 {
-            link.friction.coulomb
-        } else {
-            FRICTION_SHARE * link.torque_limit
-        };
-        let gain = (1.5 * friction / inertia).max(SPEED_GAIN_MIN);
-        let strong = 0.5 * link.torque_limit / inertia;
+    let joints = || parameters.links.iter().zip(inertias);
+    let mut calm = 0.0f64;
+    for (link, &inertia) in joints() {
+        calm = calm.max(shaking(link, inertia, SPEED_GAIN_MIN));
+    }
+    calm *= LIGHT_SHARE;
+    let mut squares = 0.0;
+    for (i, (link, &inertia)) in joints().enumerate() {
+        // Without the bound by torque s is proportional to kv^2.
+        let of_one = SWING * link.speed_limit * libm::sqrt(inertia);
+        let gain = friction_gain(link, inertia)
+            .min(libm::sqrt(calm / of_one))
+            .max(SPEED_GAIN_MIN);
+        let shaking = shaking(link, inertia, gain);
+        squares += shaking * shaking;
         limits.speed_gain[i] = gain;
-        limits.acceleration[i] = (0.42 * gain * link.speed_limit).min(strong);
+        limits.acceleration[i] = acceleration(link, inertia, gain);
         limits.braking[i] = 4.4 * link.speed_limit;
     }
+    let mut share = 1.0f64;
+    for (link, &inertia) in joints() {
+        let rate = RATE_SHARE * link.torque_rate_limit;
+        share = share.min(rate / libm::sqrt(inertia * squares));
+    }
+    limits.acceleration = limits.acceleration.map(|alpha| alpha * share);
     limits
+}
+
+/// kv \[1/s\] with which a joint of M_jj = `inertia` \[kg m2\] overcomes its friction.
+fn friction_gain(link: &LinkParameters, inertia: f64) -> f64 {
+    let friction = if link.friction.coulomb > 0.0 {
+        link.friction.coulomb
+    } else {
+        FRICTION_SHARE * link.torque_limit
+    };
+    1.5 * friction / inertia
+}
+
+/// alpha \[rad/s2\] that goes with a kv \[1/s\].
+fn acceleration(link: &LinkParameters, inertia: f64, gain: f64) -> f64 {
+    let strong = STRONG_SHARE * link.torque_limit / inertia;
+    (SWING * gain * link.speed_limit).min(strong)
+}
+
+/// s \[kg^1/2 m/s3\] that goes with a kv \[1/s\].
+fn shaking(link: &LinkParameters, inertia: f64, gain: f64) -> f64 {
+    gain * acceleration(link, inertia, gain) * libm::sqrt(inertia)
 }
 
 /// Places of each joint that are looked at, and rounds over the joints.

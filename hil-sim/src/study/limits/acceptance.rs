@@ -190,7 +190,7 @@ fn straight(runs: &[Outcome], step_nm: f64, back_mm: f64) -> Vec<Criterion> {
 
 fn random(runs: &[Outcome], plan: &Plan) -> Vec<Criterion> {
     let mut all = vec![stops(runs), outside(runs)];
-    let fastest = largest(runs, |run| run.speed_share);
+    let fastest = largest(runs, |run| run.speed_share());
     all.push(at_most("speed, of its limit", fastest, 0.98));
     if is_lwr(&plan.arm) {
         all.extend(steps(runs, [8.0, 18.0, 35.0]));
@@ -276,7 +276,7 @@ fn one_ordered(run: &Outcome, precision: Precision) -> Vec<Criterion> {
         "fast-30-beyond" | "chord-40-beyond" => vec![
             torque(70.0),
             step(2.0),
-            at_most("speed, of its limit", run.speed_share, 0.901),
+            at_most("speed, of its limit", run.speed_share(), 0.901),
             first(if run.run == "fast-30-beyond" {
                 34.0
             } else {

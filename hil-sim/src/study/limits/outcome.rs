@@ -1,7 +1,7 @@
 //! What a run reached.
 
 use controller_core::Status;
-use controller_core::arm::ArmParameters;
+use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::cycle::Data;
 use controller_core::fault::IndexSet;
 use controller_core::joint::{DOF, JointState, JointVector};
@@ -33,8 +33,8 @@ pub struct Outcome {
     pub torque_nm: f64,
     /// Largest change of a torque from one cycle to the next.
     pub step: Step,
-    /// Largest |dq|, as a share of the speed limit of the joint.
-    pub speed_share: f64,
+    /// Largest |dq| of each joint, as a share of its speed limit where it was.
+    pub speed_shares: [f64; DOF],
     /// The position farthest beyond the range of its joint \[deg\]; negative inside.
     pub beyond_deg: f64,
     /// Largest distance from the start, joint by joint \[deg\].
@@ -101,6 +101,14 @@ pub struct LimitedCycles {
     pub bounded: usize,
     pub unresolved: usize,
     pub stuck: usize,
+}
+
+impl Outcome {
+    /// Largest |dq| of any joint, as a share of its speed limit where it was.
+    #[must_use]
+    pub fn speed_share(&self) -> f64 {
+        self.speed_shares.into_iter().fold(0.0, f64::max)
+    }
 }
 
 impl LimitedCycles {
@@ -170,7 +178,7 @@ impl<'a> Tally<'a> {
                 cycles: 0,
                 torque_nm: 0.0,
                 step: Step::default(),
-                speed_share: 0.0,
+                speed_shares: [0.0; DOF],
                 beyond_deg: f64::NEG_INFINITY,
                 travel_deg: [0.0; DOF],
                 hold_speed: None,
@@ -265,6 +273,13 @@ impl<'a> Tally<'a> {
     }
 }
 
+/// |dq| as a share of what the joint may have at q.
+fn speed_share(link: &LinkParameters, q: f64, dq: f64) -> f64 {
+    let [least, greatest] = link.speed_range(q);
+    let limit = if dq < 0.0 { -least } else { greatest };
+    if dq == 0.0 { 0.0 } else { dq.abs() / limit }
+}
+
 fn add_joints(
     outcome: &mut Outcome,
     cycle: &Cycle<'_>,
@@ -275,7 +290,8 @@ fn add_joints(
         let (q, dq) = (cycle.truth.q[i], cycle.truth.dq[i]);
         let [min, max] = link.position_range;
         outcome.torque_nm = outcome.torque_nm.max(cycle.torque[i].abs());
-        outcome.speed_share = outcome.speed_share.max(dq.abs() / link.speed_limit);
+        let share = speed_share(link, q, dq);
+        outcome.speed_shares[i] = outcome.speed_shares[i].max(share);
         outcome.beyond_deg = outcome.beyond_deg.max((min - q).max(q - max).to_degrees());
         let travel = (q - start[i]).abs().to_degrees();
         outcome.travel_deg[i] = outcome.travel_deg[i].max(travel);

@@ -37,7 +37,7 @@ type Figure = fn(&Outcome) -> f64;
 const FIGURES: [(&str, Figure); 7] = [
     ("torque step Nm", |run| run.step.nm),
     ("torque Nm", |run| run.torque_nm),
-    ("speed, of its limit", |run| run.speed_share),
+    ("speed, of its limit", |run| run.speed_share()),
     ("beyond a range deg", |run| run.beyond_deg),
     ("pivots", |run| f64::from(run.pivots)),
     ("null power, least W", |run| run.null_power_w[0]),
@@ -64,7 +64,7 @@ const COUNTS: [(&str, Count); 5] = [
     ("runs stopped", |run| run.stop.is_some()),
     ("runs with a large step", |run| run.step.nm > SMALL_STEP_NM),
     ("runs beyond a range", |run| run.beyond_deg > 0.0),
-    ("runs above a speed limit", |run| run.speed_share > 1.0),
+    ("runs above a speed limit", |run| run.speed_share() > 1.0),
     ("runs with a torque cut", |run| run.limited.saturated > 0),
 ];
 
@@ -183,7 +183,7 @@ pub fn one_by_one(runs: &[Outcome]) -> String {
             run.run,
             brief(run.torque_nm),
             brief(run.step.nm),
-            brief(run.speed_share),
+            brief(run.speed_share()),
             brief(first.max),
             hold,
             brief(first.end),
