@@ -75,6 +75,12 @@ impl EquippedArm {
         }
     }
 
+    /// The names of all arms in the crate `arms`.
+    #[must_use]
+    pub fn names() -> Vec<&'static str> {
+        arms::ALL.map(|arm| arm.name).into()
+    }
+
     /// The arm called `robot` in the crate `arms`, with what a file says of it.
     ///
     /// # Errors
@@ -84,10 +90,8 @@ impl EquippedArm {
         mount: Option<&Mount>,
         tool: Option<&ToolSpec>,
     ) -> Result<Self, Invalid> {
-        let table = arms::by_name(robot).ok_or_else(|| {
-            let known = arms::ALL.map(|arm| arm.name);
-            Invalid::name("robot", robot, &known)
-        })?;
+        let table =
+            arms::by_name(robot).ok_or_else(|| Invalid::name("robot", robot, &Self::names()))?;
         let mut arm = Self::of(table);
         if let Some(mount) = mount {
             each(ANGLE_DEG, "rpy_deg", &mount.rpy_deg).map_err(|error| error.in_table("mount"))?;

@@ -11,6 +11,7 @@ use crate::interrupt;
 use crate::study::limits::acceptance::{self, Criterion};
 use crate::study::limits::case::is_lwr;
 use crate::study::limits::jobs::{Plan, SetOutcome};
+use crate::study::limits::published;
 use crate::study::limits::run::{Law, Precision};
 use crate::study::limits::set::Set;
 use crate::study::limits::table;
@@ -68,6 +69,9 @@ struct LimitsOptions {
     #[arg(long, value_parser = whole(JOBS),
         help = format!("Runs at the same time, {JOBS} [default: one per processor]"))]
     jobs: Option<usize>,
+    /// Print the tables of docs/limits-study.md instead, of both plants, both precisions and all arms; with --from that of the runs from files
+    #[arg(long, conflicts_with_all = ["sets", "arm", "plant", "precision", "law", "output"])]
+    tables: bool,
     /// Write every figure of every run to this file, as JSON
     #[arg(long)]
     output: Option<PathBuf>,
@@ -105,16 +109,16 @@ impl LimitsOptions {
     fn run(&self) -> Result<u8, Invalid> {
         let plan = self.plan()?;
         interrupt::heed();
-        let terminal = io::stderr().is_terminal();
-        let outcomes = plan.run(|done, all| {
-            if terminal {
-                show(format_args!("\r{done} of {all} runs "));
+        if self.tables {
+            // Without runs a table has no rows, and is not printed.
+            let text = published::all(&plan, &|plan| Ok(made(plan)?.unwrap_or_default()))?;
+            if interrupt::stop().is_some() {
+                return Ok(STOPPED);
             }
-        })?;
-        if terminal {
-            show("\r                              \r");
+            print(text)?;
+            return Ok(0);
         }
-        let Some(outcomes) = outcomes else {
+        let Some(outcomes) = made(&plan)? else {
             return Ok(STOPPED);
         };
         let sets: Vec<_> = outcomes
@@ -172,6 +176,20 @@ impl LimitsOptions {
             from: self.from.clone(),
         })
     }
+}
+
+/// The runs of a plan, with their progress on a terminal; none where a signal ended it.
+fn made(plan: &Plan) -> Result<Option<Vec<SetOutcome>>, Invalid> {
+    let terminal = io::stderr().is_terminal();
+    let outcomes = plan.run(|done, all| {
+        if terminal {
+            show(format_args!("\r{done} of {all} runs "));
+        }
+    })?;
+    if terminal {
+        show("\r                              \r");
+    }
+    Ok(outcomes)
 }
 
 fn law(name: &str) -> Result<Law, Invalid> {

@@ -6,8 +6,8 @@
 //!   [`straight`], [`ordered`]: the runs; [`import`]: runs from files;
 //! - [`run`]: one run in the closed loop; [`outcome`]: its figures; [`truth`]: where levels really
 //!   are;
-//! - [`acceptance`]: what must hold; [`table`]: figures and acceptance for people; [`jobs`]: all
-//!   runs.
+//! - [`acceptance`]: what must hold; [`table`]: figures and acceptance for people; [`published`]:
+//!   the tables of the document; [`jobs`]: all runs.
 
 pub mod acceptance;
 pub mod case;
@@ -18,6 +18,7 @@ pub mod ordered;
 pub mod outcome;
 pub mod parameters;
 pub mod passes;
+pub mod published;
 pub mod push;
 pub mod random;
 pub mod run;

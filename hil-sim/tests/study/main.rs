@@ -4,6 +4,7 @@ mod acceptance;
 mod command;
 mod distribution;
 mod files;
+mod published;
 
 use cell::names::PlantKind;
 use cell::scenario::EquippedArm;

@@ -48,12 +48,30 @@ fn criterion(what: impl Into<String>, value: f64, allowed: String, met: bool) ->
     }
 }
 
+/// A limit, small ones by their power of ten.
+fn written(limit: f64) -> String {
+    match limit != 0.0 && limit.abs() < 1e-3 {
+        true => format!("{limit:e}"),
+        false => format!("{limit}"),
+    }
+}
+
 fn below(what: impl Into<String>, value: f64, limit: f64) -> Criterion {
-    criterion(what, value, format!("below {limit}"), value < limit)
+    criterion(
+        what,
+        value,
+        format!("below {}", written(limit)),
+        value < limit,
+    )
 }
 
 fn at_most(what: impl Into<String>, value: f64, limit: f64) -> Criterion {
-    criterion(what, value, format!("at most {limit}"), value <= limit)
+    criterion(
+        what,
+        value,
+        format!("at most {}", written(limit)),
+        value <= limit,
+    )
 }
 
 fn at_least(what: impl Into<String>, value: f64, limit: f64) -> Criterion {

@@ -18,7 +18,7 @@ fn spread(values: &[f64]) -> String {
 }
 
 /// A number with three digits that say something.
-fn brief(value: f64) -> String {
+pub(super) fn brief(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e5).contains(&size) {
         return format!("{value:.1e}");
