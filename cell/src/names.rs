@@ -86,13 +86,20 @@ pub enum MeasurementKind {
     /// Position and speed as the plant gives them.
     #[default]
     Direct,
+    /// The same under the conditions of the link: the arm is held before time 0, speeds are
+    /// estimated from positions, and the robot adds gravity by itself.
+    LikeFri,
     /// Positions in the datagrams of FRI; speeds are estimated.
     Fri,
 }
 
 impl Named for MeasurementKind {
     const THING: &'static str = "measurement";
-    const ALL: &'static [(&'static str, Self)] = &[("direct", Self::Direct), ("fri", Self::Fri)];
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("direct", Self::Direct),
+        ("like-fri", Self::LikeFri),
+        ("fri", Self::Fri),
+    ];
 }
 
 /// On or off.

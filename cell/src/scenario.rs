@@ -156,7 +156,7 @@ pub struct Limit {
     pub plant: String,
     /// With contacts or without.
     pub contacts: bool,
-    /// "direct" or "fri".
+    /// "direct", "like-fri" or "fri".
     #[serde(default = "default_measurement")]
     pub measurement: String,
     /// For runs with so many cycles of dead time.

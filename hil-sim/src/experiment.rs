@@ -6,7 +6,7 @@ use std::io;
 
 use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
-use controller_core::{Controller, ControllerConfig, Measurement};
+use controller_core::{Controller, ControllerConfig, Measurement, Reference};
 
 use crate::after_fault::{Acting, Ending};
 use crate::arm_points::origins;
@@ -16,7 +16,7 @@ use crate::interrupt;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
-use crate::robot::{Driving, Robot, RobotOptions, RobotSetup};
+use crate::robot::{self, Driving, Robot, RobotOptions, RobotSetup};
 use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
@@ -69,7 +69,7 @@ impl Experiment {
     /// # Errors
     /// Tasks that the core does not take.
     pub fn controller_config(&self) -> Result<ControllerConfig, Invalid> {
-        if self.measurement == MeasurementKind::Fri {
+        if self.measurement != MeasurementKind::Direct {
             return Ok(self.session()?.controller);
         }
         let dead_cycles = self.options.dead_cycles as u8;
@@ -137,9 +137,14 @@ impl Experiment {
         };
         let probes = LevelProbes::new(scenario);
         let origins = origins(scenario, &scenario.start());
+        let like_over_link = self.measurement == MeasurementKind::LikeFri;
         let mut driver = match self.controller {
             ControllerKind::Torque(law) => {
-                Driver::Torque(Box::new(TorqueDriver::new(controller, law, scenario)))
+                let mut driver = TorqueDriver::new(controller, law, scenario);
+                if like_over_link {
+                    driver = driver.like_over_link(self.options.dead_cycles);
+                }
+                Driver::Torque(Box::new(driver))
             }
             ControllerKind::VelocityLevel => {
                 let driver = PositionDriver::new(scenario, self.options.dead_cycles);
@@ -158,7 +163,12 @@ impl Experiment {
         let mut metrics = Metrics::new(levels, &intervals, &arm, cycle_s);
         let mut ending = Ending::new(cycle_s);
 
-        for cycle in 0.. {
+        // Cycles before time 0, in which the arm is held where it starts.
+        let held = match like_over_link {
+            true => robot::cycles(RobotOptions::default().settle_s, cycle_s) as i64,
+            false => 0,
+        };
+        for cycle in -held.. {
             let t_s = cycle as f64 * cycle_s;
             let truth = *plant.state();
             let unsafe_motion = UnsafeMotion::of(&truth, &arm);
@@ -168,7 +178,7 @@ impl Experiment {
                 ending.at_once(stop);
             }
             let over = match ending.has_begun() {
-                false => cycle >= cycles,
+                false => cycle >= cycles as i64,
                 true => ending.is_over(),
             };
             if over {
@@ -180,7 +190,10 @@ impl Experiment {
                 dq,
                 interval_s: cycle_s,
             };
-            let reference = scenario.reference(&origins, &scenario.start(), t_s);
+            let reference = match cycle < 0 {
+                true => Reference::hold(scenario.levels.len(), scenario.start()),
+                false => scenario.reference(&origins, &scenario.start(), t_s),
+            };
             let motors = *plant.motors().unwrap_or(&truth);
             let decision = driver.decide(&measurement, &reference, &motors);
             let acting = Acting {
@@ -219,16 +232,18 @@ impl Experiment {
                 limits: decision.limits,
                 levels,
             };
-            if !ending.has_begun() {
-                metrics.add(&sample);
+            if cycle >= 0 {
+                if !ending.has_begun() {
+                    metrics.add(&sample);
+                }
+                sink(&sample)?;
             }
-            sink(&sample)?;
             let Driving { torque, impedance } = &decision.driving;
             plant.advance_with(t_s, torque, impedance, |t, model, state| {
                 contacts.joint_torque(t, model, state).0
             });
             if cycle % 512 == 0 {
-                progress(cycle as f64 / cycles as f64);
+                progress((t_s / scenario.duration_s).max(0.0));
             }
         }
         Ok(self.summary(&metrics, &ending))

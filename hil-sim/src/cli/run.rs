@@ -45,7 +45,7 @@ pub struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    /// How the controller sees the arm: direct, or fri: through the datagrams of the robot link, speeds estimated
+    /// How the controller sees the arm: direct; fri: through the datagrams of the robot link, held for a second before time 0, speeds estimated; like-fri: the same without datagrams
     #[arg(long, default_value = "direct")]
     measurement: String,
     #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
@@ -144,8 +144,11 @@ impl RunOptions {
         };
         let controller = ControllerKind::from_name(&self.controller)?;
         let measurement = MeasurementKind::from_name(&self.measurement)?;
-        if measurement == MeasurementKind::Fri && controller != TorqueLaw::Hierarchical.into() {
-            let allowed = "hierarchical with --measurement fri, which runs the product alone";
+        if measurement != MeasurementKind::Direct && controller != TorqueLaw::Hierarchical.into() {
+            let measurement = &self.measurement;
+            let allowed = format!(
+                "hierarchical with --measurement {measurement}, which runs the product alone"
+            );
             return Err(Invalid::new("controller", &self.controller, allowed));
         }
         Ok(Experiment {

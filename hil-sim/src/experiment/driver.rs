@@ -2,10 +2,11 @@
 //! robot's own position controller.
 
 use controller_core::cycle::Data;
+use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::fault::Mode;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
-use controller_core::{Controller, Fault, Measurement, Reference, State};
+use controller_core::{Controller, Fault, Measurement, Reference, State, Step};
 
 use crate::controllers::{LawGains, SplitDemand, TorqueLaw};
 use crate::plant::{DeadTime, Impedance, PlantOptions};
@@ -89,11 +90,11 @@ pub(super) enum Driver<'a> {
 
 impl Driver<'_> {
     /// The plant's share of `options`: the dead time of positions is on their way to the
-    /// robot's springs, which themselves have none.
+    /// robot's springs, that of a link on the way of the added torque; neither is the motors'.
     pub fn plant_options(&self, options: PlantOptions) -> PlantOptions {
         match self {
-            Self::Torque(_) => options,
-            Self::Position(_) => PlantOptions {
+            Self::Torque(driver) if driver.link.is_none() => options,
+            _ => PlantOptions {
                 dead_cycles: 0,
                 ..options
             },
@@ -114,12 +115,50 @@ impl Driver<'_> {
     }
 }
 
+/// What stands between a torque law and the arm over a robot link, but for the link: speeds
+/// are estimated, and only what is added to gravity has dead time.
+struct LinkConditions {
+    velocity: VelocityEstimator<f64>,
+    /// The way of the added torque to the robot.
+    way: DeadTime,
+    /// The torque that acts since the last cycle \[Nm\].
+    acting: Option<JointVector<f64>>,
+}
+
+impl LinkConditions {
+    fn new(dead_cycles: usize) -> Self {
+        Self {
+            velocity: VelocityEstimator::new(CORNER_HZ),
+            way: DeadTime::new(dead_cycles, JointVector::zeros()),
+            acting: None,
+        }
+    }
+
+    /// The measurement with the speed that a robot's positions give.
+    fn measured(&mut self, measurement: &Measurement<f64>) -> Measurement<f64> {
+        let JointState { q, dq } = (self.velocity).update(&measurement.q, measurement.interval_s);
+        Measurement {
+            q,
+            dq,
+            interval_s: measurement.interval_s,
+        }
+    }
+
+    /// The torque \[Nm\] that acts from this cycle to the next.
+    fn act(&mut self, step: &Step<f64>) -> JointVector<f64> {
+        let torque = self.way.pass(&(step.torque - step.gravity)) + step.gravity;
+        self.acting = Some(torque);
+        torque
+    }
+}
+
 /// A torque law inside the core's cycle.
 pub(super) struct TorqueDriver<'a> {
     controller: &'a Controller<f64>,
     law: TorqueLaw,
     gains: LawGains,
     state: State<f64>,
+    link: Option<LinkConditions>,
 }
 
 impl<'a> TorqueDriver<'a> {
@@ -132,14 +171,30 @@ impl<'a> TorqueDriver<'a> {
                 stiffness: controller.compliance().stiffness,
             },
             state: State::new(),
+            link: None,
+        }
+    }
+
+    /// Under the conditions of a link whose torques act `dead_cycles` later.
+    pub fn like_over_link(self, dead_cycles: usize) -> Self {
+        Self {
+            link: Some(LinkConditions::new(dead_cycles)),
+            ..self
         }
     }
 
     fn decide(&mut self, measurement: &Measurement<f64>, reference: &Reference<f64>) -> Decision {
         let (mut view, mut limits) = (PriorityView::default(), None);
         let (law, gains, state) = (self.law, &self.gains, &mut self.state);
+        let mut measurement = *measurement;
+        if let Some(link) = &mut self.link {
+            measurement = link.measured(&measurement);
+            if let Some(torque) = &link.acting {
+                state.set_applied_torque(torque);
+            }
+        }
         let step = if self.controller.has_limits() {
-            let step = self.controller.step(state, measurement, reference);
+            let step = self.controller.step(state, &measurement, reference);
             let data = state.data();
             view = PriorityView::within_limits(data);
             limits = Some(LimitSample {
@@ -150,20 +205,24 @@ impl<'a> TorqueDriver<'a> {
             step
         } else {
             self.controller
-                .step_with(state, measurement, reference, |_, _, data| {
+                .step_with(state, &measurement, reference, |_, _, data| {
                     let demand = law.decide(data, gains);
                     view = PriorityView::new(data, &demand);
                     data.demand = demand.demand(&data.dynamics);
                 })
         };
+        let torque = match &mut self.link {
+            None => step.torque,
+            Some(link) => link.act(&step),
+        };
         Decision {
             fault: step.status.fault,
             mode: step.status.mode,
             driving: Driving {
-                torque: step.torque,
+                torque,
                 impedance: Impedance::NONE,
             },
-            torque: step.torque,
+            torque,
             residual: step.residual,
             saturated: step.status.saturated.any(),
             rank: step.status.rank.any(),

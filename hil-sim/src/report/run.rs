@@ -57,7 +57,7 @@ impl Choices {
 
     /// Whether the null-space damping is c M and not the scenario's D.
     pub(super) fn has_inertia_damping(&self) -> bool {
-        self.measurement == MeasurementKind::Fri || self.options.dead_cycles > 0
+        self.measurement != MeasurementKind::Direct || self.options.dead_cycles > 0
     }
 }
 

@@ -45,6 +45,7 @@ pub use fri::measurement::LEN as MEASUREMENT_BYTES;
 pub use inbox::Answer;
 pub use krc::Krc;
 pub use model::RobotModel;
+pub(crate) use options::cycles;
 pub use options::{Krl, POSITION_STIFFNESS, RatingOptions, RobotAdds, RobotOptions, scheme_named};
 pub use order::Order;
 pub use rating::{Rating, Statistics};

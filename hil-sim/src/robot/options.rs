@@ -165,6 +165,6 @@ impl Default for RobotOptions {
 }
 
 /// Whole cycles in a time, at least one.
-pub(super) fn cycles(time_s: f64, cycle_s: f64) -> u64 {
+pub(crate) fn cycles(time_s: f64, cycle_s: f64) -> u64 {
     (time_s / cycle_s).round().max(1.0) as u64
 }
