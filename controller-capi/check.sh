@@ -53,7 +53,7 @@ else
   skipped "header: cbindgen $cbindgen_version is not installed and could not be"
 fi
 
-programs="bare_loop tool replay errors"
+programs="bare_loop tool own_arm replay errors"
 # On the target the stack that they need is measured as well.
 target_programs="$programs stack"
 task="rtos_task.c rtos_host.c robot_host.c board.c board_host.c"
@@ -134,6 +134,7 @@ if have gcc; then
     done
     "$out/bare_loop-$precision"
     "$out/tool-$precision"
+    "$out/own_arm-$precision"
     "$out/errors-$precision" > "$out/errors.txt" || { cat "$out/errors.txt"; exit 1; }
     tail -n 1 "$out/errors.txt"
     "$out/replay-$precision" > "$out/host-$precision"

@@ -6,6 +6,12 @@ use std::path::Path;
 /// Most bytes of a text.
 pub const MOST: u64 = 1 << 20;
 
+/// Whether a person who wrote this meant a file, not a name.
+#[must_use]
+pub fn is_path(name: &str) -> bool {
+    name.contains(std::path::MAIN_SEPARATOR) || Path::new(name).extension().is_some()
+}
+
 /// The text of a regular file. A pipe or a device is none: it may never end, or never
 /// begin.
 ///

@@ -1,6 +1,20 @@
 //! Choices that have a name on the command line and in files.
 
 use crate::invalid::Invalid;
+use crate::ranges::NAME_LETTERS;
+
+/// Checks a name that may become one of a folder, a point or a constant.
+///
+/// # Errors
+/// It is empty, too long, or has other letters than those.
+pub fn simple(key: &str, given: &str) -> Result<(), Invalid> {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if NAME_LETTERS.contains(given.len()) && given.chars().all(letter) {
+        return Ok(());
+    }
+    let allowed = format!("{NAME_LETTERS} letters, digits, '-' and '_'");
+    Err(Invalid::new(key, given, allowed))
+}
 
 /// A closed set of named choices.
 pub trait Named: Copy + 'static {

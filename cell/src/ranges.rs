@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use controller_core::joint::DOF;
 use controller_core::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, JOINT_LIMIT_RANGE, LEVEL_SPEED_RANGE, MASS_MIN, MAX_LEVELS,
-    MAX_ROWS, MOBILITY_RANGE, QUATERNION_NORMS,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, LEVEL_SPEED_RANGE, MASS_MIN,
+    MAX_LEVELS, MAX_ROWS, MOBILITY_RANGE, QUATERNION_NORMS,
 };
 
 use crate::invalid::Invalid;
@@ -63,6 +63,19 @@ impl<T: Number> Range<T> {
     }
 }
 
+impl Range<f64> {
+    /// The same of angles in rad, to a thousandth.
+    #[must_use]
+    pub fn in_radians(self) -> Self {
+        let radians = |degrees: f64| (degrees.to_radians() * 1e3).trunc() / 1e3;
+        Self {
+            min: radians(self.min),
+            max: radians(self.max),
+            ..self
+        }
+    }
+}
+
 impl<T: fmt::Display> fmt::Display for Range<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { min, max, above } = self;
@@ -114,6 +127,52 @@ pub const OFFSET_M: Range<f64> = Range::new(-2.0, 2.0);
 
 /// Roll, pitch or yaw \[deg\].
 pub const ANGLE_DEG: Range<f64> = Range::new(-360.0, 360.0);
+
+/// A length of an arm's table, a coordinate of its centres of mass and frames \[m\].
+pub const LENGTH_M: Range<f64> = Range::new(-10.0, 10.0);
+
+/// Mass of a link \[kg\].
+pub const LINK_MASS_KG: Range<f64> = Range::new(MASS_MIN, 1000.0);
+
+/// Gravitational acceleration \[m/s2\].
+pub const GRAVITY_M_S2: Range<f64> = Range::new(0.0, GRAVITY_MAX);
+
+/// An end of the range of a joint \[deg\]: with an offset of a turn and the margin beyond the
+/// range the core's 100 turns.
+pub const POSITION_DEG: Range<f64> = Range::new(-35_600.0, 35_600.0);
+
+/// Largest speed of a joint \[deg/s\].
+pub const JOINT_SPEED_DEG_S: Range<f64> = Range::above(0.0, 1e5);
+
+/// Largest torque of a joint \[Nm\].
+pub const TORQUE_NM: Range<f64> = Range::above(0.0, 1e5);
+
+/// Largest change of the torque of a joint \[Nm/s\].
+pub const TORQUE_RATE_NM_S: Range<f64> = Range::above(0.0, 1e9);
+
+/// Inertia of a rotor as its joint feels it \[kg m2\].
+pub const ROTOR_KG_M2: Range<f64> = Range::new(0.0, 100.0);
+
+/// Coulomb friction of a joint \[Nm\].
+pub const COULOMB_NM: Range<f64> = Range::new(0.0, 1e4);
+
+/// Viscous friction of a joint \[Nms/rad\].
+pub const VISCOUS_NMS: Range<f64> = Range::new(0.0, 1e4);
+
+/// Speed within which Coulomb friction changes its sign \[rad/s\].
+pub const SMOOTHING_RAD_S: Range<f64> = Range::above(0.0, 10.0);
+
+/// A deceleration near the end of a range \[rad/s2\].
+pub const DECELERATION_RAD_S2: Range<f64> = Range::above(0.0, 1e5);
+
+/// A speed that is taken off near the end of a range \[rad/s\].
+pub const APPROACH_MARGIN_RAD_S: Range<f64> = Range::new(0.0, 100.0);
+
+/// Number of points of an arm that have a name, without the flange.
+pub const POINTS: Range<usize> = Range::new(0, 32);
+
+/// Number of postures of the sampling bound.
+pub const DAMPING_POSTURES: Range<usize> = Range::new(0, 64);
 
 /// Mass of a tool \[kg\].
 pub const TOOL_MASS_KG: Range<f64> = Range::new(MASS_MIN, 100.0);

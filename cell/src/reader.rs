@@ -9,24 +9,24 @@ use serde::de::DeserializeOwned;
 use crate::invalid::Invalid;
 use tree::Node;
 
-/// Reads a TOML text and checks what it says.
+/// Reads a TOML text, checks what it says and completes it.
 ///
 /// # Errors
 /// The first line and key that cannot be used.
 pub fn toml<T: DeserializeOwned>(
     text: &str,
-    check: impl FnOnce(&T) -> Result<(), Invalid>,
+    check: impl FnOnce(&mut T) -> Result<(), Invalid>,
 ) -> Result<T, Invalid> {
     read(text, &Node::of_toml(text)?, check)
 }
 
-/// Reads a JSON text and checks what it says.
+/// Reads a JSON text, checks what it says and completes it.
 ///
 /// # Errors
 /// The first line and key that cannot be used.
 pub fn json<T: DeserializeOwned>(
     text: &str,
-    check: impl FnOnce(&T) -> Result<(), Invalid>,
+    check: impl FnOnce(&mut T) -> Result<(), Invalid>,
 ) -> Result<T, Invalid> {
     read(text, &Node::of_json(text)?, check)
 }
@@ -34,9 +34,9 @@ pub fn json<T: DeserializeOwned>(
 fn read<T: DeserializeOwned>(
     text: &str,
     root: &Node,
-    check: impl FnOnce(&T) -> Result<(), Invalid>,
+    check: impl FnOnce(&mut T) -> Result<(), Invalid>,
 ) -> Result<T, Invalid> {
-    let read = T::deserialize(root).and_then(|value| check(&value).map(|()| value));
+    let read = T::deserialize(root).and_then(|mut value| check(&mut value).map(|()| value));
     read.map_err(|error| {
         let line = tree::line(text, root.offset(&error.path()));
         error.within(format_args!("line {line}"))

@@ -23,10 +23,13 @@ use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
 use controller_core::{ControllerConfig, Reference, Target, TaskSet};
 use serde::Deserialize;
 
+use crate::arm::joint_limits::JointLimitsSpec;
+use crate::arm::robot::Robot;
+use crate::file::{self, is_path};
 use crate::invalid::Invalid;
-use crate::names::{MeasurementKind, Named, PlantKind};
+use crate::names::{MeasurementKind, Named, PlantKind, simple};
 use crate::ranges::{
-    CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, NAME_LETTERS, RATE_GAIN, ROWS, Range,
+    CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, RATE_GAIN, ROWS, Range,
 };
 use crate::reader;
 
@@ -36,7 +39,7 @@ pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec, TaskSpec};
 pub use limits::NEAR_LIMITS;
 pub use metric::{Metric, Unit};
-pub use near::{JointLimitsSpec, LawSpec, LevelLimitsSpec};
+pub use near::{LawSpec, LevelLimitsSpec};
 pub use point::PointSpec;
 pub use push::Push;
 pub use reference::{AxisOf, ReferenceSpec};
@@ -57,8 +60,8 @@ pub const BUILT_IN: &[(&str, &str)] = &[
 pub struct Scenario {
     /// Name, also of the output folder.
     pub name: String,
-    /// Name of the arm, one of [`arms::ALL`].
-    pub robot: String,
+    /// The arm: a name, or an arm file.
+    pub robot: Robot,
     /// How it is mounted; as its table says unless given.
     #[serde(default)]
     pub mount: Option<Mount>,
@@ -177,20 +180,20 @@ impl Scenario {
         if let Some((_, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
             return Self::parse(text).map_err(|error| error.within(name));
         }
-        let looks_like_path =
-            name.contains(std::path::MAIN_SEPARATOR) || Path::new(name).extension().is_some();
-        if !looks_like_path {
+        if !is_path(name) {
             let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
             return Err(Invalid::name("scenario", name, &known));
         }
-        let text = crate::file::text(Path::new(name)).map_err(|error| {
+        let path = Path::new(name);
+        let text = file::text(path).map_err(|error| {
             Invalid::new(
                 "scenario file",
                 name,
                 format_args!("a readable TOML file ({error})"),
             )
         })?;
-        Self::parse(&text).map_err(|error| error.within(name))
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse_in(&text, folder).map_err(|error| error.within(name))
     }
 
     /// The TOML text of a built-in scenario.
@@ -205,12 +208,23 @@ impl Scenario {
             .ok_or_else(|| Invalid::name("scenario", name, &known))
     }
 
-    /// Reads and checks a scenario.
+    /// Reads and checks a scenario; an arm file is looked for in the working directory.
     ///
     /// # Errors
     /// The first line or key that cannot be used.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
-        reader::toml(text, Self::validate)
+        Self::parse_in(text, Path::new(""))
+    }
+
+    /// The same of a text from `folder`, in which an arm file is looked for.
+    ///
+    /// # Errors
+    /// The first line or key that cannot be used.
+    pub fn parse_in(text: &str, folder: &Path) -> Result<Self, Invalid> {
+        reader::toml(text, |scenario: &mut Self| {
+            scenario.robot.find(folder)?;
+            scenario.validate()
+        })
     }
 
     /// Checks every number, name and shape that the file format leaves open.
@@ -218,13 +232,8 @@ impl Scenario {
     /// # Errors
     /// The first key that cannot be used.
     pub fn validate(&self) -> Result<(), Invalid> {
-        let simple = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if !NAME_LETTERS.contains(self.name.len()) || !self.name.chars().all(simple) {
-            let allowed = format!("{NAME_LETTERS} letters, digits, '-' and '_'");
-            return Err(Invalid::new("name", &self.name, allowed));
-        }
-        let arm = EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())?;
-        let arm = &arm;
+        simple("name", &self.name)?;
+        let arm = &self.equipped()?;
         if let Some(limits) = &self.joint_limits {
             limits
                 .validate()
@@ -281,11 +290,16 @@ impl Scenario {
         Ok(())
     }
 
+    fn equipped(&self) -> Result<EquippedArm, Invalid> {
+        EquippedArm::equipped(self.robot.table()?, self.mount.as_ref(), self.tool.as_ref())
+    }
+
     /// The arm as it stands. The scenario must be valid; of one that is not, the first arm
     /// there is.
     #[must_use]
     pub fn arm(&self) -> EquippedArm {
-        let mut arm = EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
+        let mut arm = self
+            .equipped()
             .unwrap_or_else(|_| EquippedArm::of(arms::ALL[0]));
         if let Some(spec) = &self.joint_limits {
             arm.parameters.limits = spec.of_arm(&arm.parameters, self.cycle_s());

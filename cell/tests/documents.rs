@@ -1,5 +1,6 @@
 //! The documents and the comments in the built-in scenarios say the declared ranges.
 
+use cell::arm::joint::{BRAKE_RATE, TORQUE_RATE};
 use cell::ranges::*;
 use cell::scenario::BUILT_IN;
 
@@ -79,6 +80,67 @@ fn the_tables_say_the_ranges() {
                 &[format!("0 (default) to {}", DEAD_CYCLES.max)],
             ),
             ("`limit.below` |", &[text(LIMIT)]),
+        ],
+    );
+    rows(
+        "arms.md",
+        "## Arm files",
+        &[
+            ("`name` |", &[NAME_LETTERS.to_string()]),
+            ("`gravity_m_s2` |", &[text(GRAVITY_M_S2)]),
+            (
+                "`base.shift_m`, `.rpy_deg` |",
+                &[text(LENGTH_M), text(ANGLE_DEG)],
+            ),
+            (
+                "`flange.shift_m`, `.rpy_deg` |",
+                &[text(LENGTH_M), text(ANGLE_DEG)],
+            ),
+            ("`joint.a_m`, `.d_m` |", &[text(LENGTH_M)]),
+            (
+                "`joint.alpha_deg`, `.angle_offset_deg` |",
+                &[text(ANGLE_DEG)],
+            ),
+            ("`joint.mass_kg` |", &[text(LINK_MASS_KG)]),
+            ("`joint.center_of_mass_m` |", &[text(LENGTH_M)]),
+            ("`joint.inertia_kg_m2` |", &[text(INERTIA_KG_M2)]),
+            ("`joint.rotor_inertia_kg_m2` |", &[text(ROTOR_KG_M2)]),
+            (
+                "`joint.friction.coulomb_nm`, `.viscous_nms_rad` |",
+                &[text(COULOMB_NM), text(VISCOUS_NMS)],
+            ),
+            (
+                "`joint.friction.smoothing_rad_s` |",
+                &[text(SMOOTHING_RAD_S)],
+            ),
+            ("`joint.position_range_deg` |", &[text(POSITION_DEG)]),
+            ("`joint.speed_limit_deg_s` |", &[text(JOINT_SPEED_DEG_S)]),
+            (
+                "`joint.end_approach` |",
+                &[
+                    text(APPROACH_MARGIN_RAD_S),
+                    text(DECELERATION_RAD_S2),
+                    text(POSITION_DEG),
+                ],
+            ),
+            ("`joint.torque_limit_nm` |", &[text(TORQUE_NM)]),
+            (
+                "`joint.torque_rate_limit_nm_s`, `.brake_rate_limit_nm_s` |",
+                &[
+                    text(TORQUE_RATE_NM_S),
+                    TORQUE_RATE.to_string(),
+                    BRAKE_RATE.to_string(),
+                ],
+            ),
+            ("`[[point]]` |", &[POINTS.to_string()]),
+            (
+                "`point.name`, `.link`, `.offset_m` |",
+                &[LINK.to_string(), text(LENGTH_M)],
+            ),
+            (
+                "`damping_postures_deg` |",
+                &[DAMPING_POSTURES.to_string(), text(POSITION_DEG)],
+            ),
         ],
     );
     rows(

@@ -112,6 +112,20 @@ fn in_lock_step_udp_changes_no_bit() {
     }
 }
 
+/// The table of the arm as a file beside the scenario: the same bits over the link.
+#[test]
+fn an_arm_file_is_the_same_arm() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let arm = cell::arm::text::text(&arms::LWR_IV, "");
+    std::fs::write(folder.path().join("lwr.toml"), arm).expect("a file");
+    let text = Scenario::built_in_text("two-level").expect("built in");
+    let path = folder.path().join("scenario.toml");
+    std::fs::write(&path, text.replacen("\"lwr_iv\"", "\"lwr.toml\"", 1)).expect("a file");
+    let mut of_file = Scenario::find(path.to_str().expect("text")).expect("a scenario");
+    of_file.duration_s = 2.0;
+    assert!(over_udp(&of_file, 1, true).0 == in_process(&scenario(2.0), 1));
+}
+
 /// Real time on a PC that does other things as well: only that it works.
 #[test]
 fn in_real_time_it_gets_into_command_state_and_tracks() {

@@ -1,6 +1,7 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
 mod files;
+mod model;
 mod notes;
 mod run;
 mod serve;
@@ -12,13 +13,14 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::explain::explain;
+use crate::explain::explain_in;
 use cell::arguments::usage::{self, USAGE};
 use cell::file;
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
 
+pub use model::ModelOptions;
 pub use run::RunOptions;
 pub use serve::ServeOptions;
 pub use study::StudyOptions;
@@ -58,6 +60,8 @@ enum Command {
     },
     /// Many runs near and beyond limits: what the law keeps in all of them
     Study(StudyOptions),
+    /// Arms of one's own: from a URDF to an arm file, and what an arm is like
+    Model(ModelOptions),
     /// Print a built-in scenario as commented TOML
     Scenario {
         /// two-level, case-1, case-2, hand
@@ -72,14 +76,26 @@ enum Command {
 }
 
 /// What the program can be asked for.
-const COMMANDS: &[&str] = &["run", "serve", "paper", "study", "scenario", "explain"];
+const COMMANDS: &[&str] = &[
+    "run", "serve", "paper", "study", "model", "scenario", "explain",
+];
 
 /// Runs the program with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => return usage::report("hil-sim", COMMANDS, &error),
+        Err(error) => {
+            let (program, commands) = match std::env::args_os()
+                .nth(1)
+                .as_deref()
+                .and_then(std::ffi::OsStr::to_str)
+            {
+                Some("model") => ("hil-sim model", model::COMMANDS),
+                _ => ("hil-sim", COMMANDS),
+            };
+            return usage::report(program, commands, &error);
+        }
     };
     let outcome = match cli.command {
         None => run::comparison(),
@@ -87,6 +103,7 @@ pub fn main() -> ExitCode {
         Some(Command::Serve(options)) => options.run(),
         Some(Command::Paper { out }) => crate::paper::run(&out),
         Some(Command::Study(options)) => options.run(),
+        Some(Command::Model(options)) => options.run(),
         Some(Command::Scenario { name }) => {
             Scenario::built_in_text(&name).and_then(print).map(|()| 0)
         }
@@ -117,7 +134,9 @@ fn explain_file(path: &Path) -> Result<String, Invalid> {
         true => (file::text_of(io::stdin()), "standard input".into()),
         false => (file::text(path), path.display().to_string()),
     };
-    let output = explain(&text.map_err(readable)?).map_err(|error| error.within(place))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let output = explain_in(&text.map_err(readable)?, folder);
+    let output = output.map_err(|error| error.within(place))?;
     let mut json = serde_json::to_string_pretty(&output).map_err(Invalid::line)?;
     json.push('\n');
     Ok(json)

@@ -3,6 +3,8 @@
 mod input;
 mod output;
 
+use std::path::Path;
+
 use controller_core::cycle::{Data, Input as CycleInput, Inspection};
 use controller_core::gain::diagonal;
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
@@ -14,12 +16,21 @@ use cell::invalid::Invalid;
 pub use input::Input;
 pub use output::Output;
 
-/// Explains the cycle described by a JSON text.
+/// Explains the cycle described by a JSON text; an arm file is looked for in the working
+/// directory.
 ///
 /// # Errors
 /// Anything in the text that cannot be used.
 pub fn explain(text: &str) -> Result<Output, Invalid> {
-    let input = Input::parse(text)?;
+    explain_in(text, Path::new(""))
+}
+
+/// The same of a text from `folder`, in which an arm file is looked for.
+///
+/// # Errors
+/// Anything in the text that cannot be used.
+pub fn explain_in(text: &str, folder: &Path) -> Result<Output, Invalid> {
+    let input = Input::parse(text, folder)?;
     let arm = input.arm()?;
     let (tasks, targets) = input.tasks(&arm);
     let null_space = NullSpace {

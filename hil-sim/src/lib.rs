@@ -13,6 +13,7 @@
 //!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
 //! - [`output`], [`trace`], [`report`]: the files of a run; [`paper`]: every experiment and
 //!   claim of the paper; [`study`]: many runs near and beyond limits;
+//! - [`model`]: arms of others, from a URDF; what an arm is like;
 //! - [`serve`]: the robot on a socket or a serial line; [`cli`]: the program.
 
 pub mod after_fault;
@@ -27,6 +28,7 @@ pub mod limit_events;
 pub mod link;
 pub mod loopback;
 pub mod metrics;
+pub mod model;
 pub mod output;
 pub mod paper;
 pub mod plant;

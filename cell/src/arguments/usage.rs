@@ -76,7 +76,12 @@ fn line(program: &str, commands: &[&str], arguments: &[String], error: &clap::Er
         ErrorKind::MissingRequiredArgument => {
             format!("missing argument: {given}; allowed: {help}")
         }
-        ErrorKind::ArgumentConflict => format!("{given}: given more than once; allowed: once"),
+        ErrorKind::ArgumentConflict => match context(ContextKind::PriorArg) {
+            Some(other) if other != given => {
+                format!("{given}: given with {other}; allowed: one of them")
+            }
+            _ => format!("{given}: given more than once; allowed: once"),
+        },
         ErrorKind::InvalidUtf8 => {
             let mut marked = arguments.iter().filter(|text| text.contains('\u{fffd}'));
             let which = marked.next().map_or("", String::as_str);

@@ -1,13 +1,14 @@
-//! The arm of a file: a table of its maker by name, mounted, with a tool.
+//! The arm of a scenario: a table, mounted, with a tool.
 
 use controller_core::arm::{ArmError, ArmModel, ArmParameters, Pose, Tool};
-use controller_core::joint::{DOF, Matrix3, Vector3};
-use controller_core::real::Real;
+use controller_core::joint::{DOF, Vector3};
 use controller_core::{LinkFrame, LinkPoint};
 use serde::Deserialize;
 
+use crate::arm::pose::{each, rotation};
+use crate::arm::robot::Robot;
 use crate::invalid::Invalid;
-use crate::ranges::{ANGLE_DEG, INERTIA_KG_M2, OFFSET_M, Range, TOOL_MASS_KG};
+use crate::ranges::{ANGLE_DEG, INERTIA_KG_M2, OFFSET_M, TOOL_MASS_KG};
 
 /// Name of the point in which the frame of a tool has its origin.
 pub const TOOL_POINT: &str = "tool";
@@ -42,21 +43,6 @@ pub struct ToolSpec {
     pub inertia_kg_m2: [f64; 6],
 }
 
-/// Rotation from a frame to its parent by roll, pitch and yaw \[deg\], by rows.
-fn rotation(rpy_deg: [f64; 3]) -> [[f64; 3]; 3] {
-    // Right angles are exact, so that zeros stay zeros.
-    let exact = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
-    let [(sr, cr), (sp, cp), (sy, cy)] = rpy_deg.map(|angle| {
-        let (sine, cosine) = angle.to_radians().sine_cosine();
-        (exact(sine), exact(cosine))
-    });
-    let x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
-    let y = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
-    let z = Matrix3::new(cy, -sy, 0.0, sy, cy, 0.0, 0.0, 0.0, 1.0);
-    // nalgebra gives columns.
-    (z * y * x).transpose().into()
-}
-
 /// An arm as it stands: the table with gravity as it is mounted and with its tool.
 #[derive(Clone, Debug)]
 pub struct EquippedArm {
@@ -75,23 +61,27 @@ impl EquippedArm {
         }
     }
 
-    /// The names of all arms in the crate `arms`.
-    #[must_use]
-    pub fn names() -> Vec<&'static str> {
-        arms::ALL.map(|arm| arm.name).into()
-    }
-
-    /// The arm called `robot` in the crate `arms`, with what a file says of it.
+    /// The arm of this name, or of this arm file, with what a file says of it.
     ///
     /// # Errors
-    /// An unknown name; angles, masses, lengths outside their ranges; a body that cannot be.
+    /// Those of [`Robot::find`] and [`EquippedArm::equipped`].
     pub fn new(
         robot: &str,
         mount: Option<&Mount>,
         tool: Option<&ToolSpec>,
     ) -> Result<Self, Invalid> {
-        let table =
-            arms::by_name(robot).ok_or_else(|| Invalid::name("robot", robot, &Self::names()))?;
+        Self::equipped(Robot::found(robot)?.table()?, mount, tool)
+    }
+
+    /// A table with what a file says of it.
+    ///
+    /// # Errors
+    /// Angles, masses, lengths outside their ranges; a body that cannot be.
+    pub fn equipped(
+        table: &ArmParameters,
+        mount: Option<&Mount>,
+        tool: Option<&ToolSpec>,
+    ) -> Result<Self, Invalid> {
         let mut arm = Self::of(table);
         if let Some(mount) = mount {
             each(ANGLE_DEG, "rpy_deg", &mount.rpy_deg).map_err(|error| error.in_table("mount"))?;
@@ -193,12 +183,6 @@ impl ToolSpec {
     }
 }
 
-fn each(range: Range<f64>, name: &str, values: &[f64]) -> Result<(), Invalid> {
-    values
-        .iter()
-        .try_for_each(|&value| range.check(name, value).map(drop))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,21 +223,6 @@ mod tests {
         assert_eq!(table.gravity, [0.0, -9.81, 0.0]);
         assert_eq!(mounted(table.name, [0.0; 3]).gravity, [0.0, 0.0, -9.81]);
         assert_eq!(mounted(table.name, [90.0, 0.0, 0.0]).gravity, table.gravity);
-    }
-
-    #[test]
-    fn turns_are_about_fixed_axes_in_the_order_x_y_z() {
-        // x to z by a quarter turn about -y ..
-        assert_eq!(
-            rotation([0.0, -90.0, 0.0]),
-            [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
-        );
-        // .. and y: first about x to z, then about the parent's z, which leaves it.
-        let [_, _, z] = rotation([90.0, 0.0, 90.0]);
-        assert_eq!(z, [0.0, 1.0, 0.0]);
-        let turn = Matrix3::from(rotation([31.0, -57.0, 143.0])).transpose();
-        assert!((turn * turn.transpose() - Matrix3::identity()).amax() < 1e-15);
-        assert!((turn.determinant() - 1.0).abs() < 1e-15);
     }
 
     #[test]

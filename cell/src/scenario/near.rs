@@ -1,16 +1,11 @@
 //! What a scenario says of the law near limits.
 
-use controller_core::arm::{ArmModel, ArmParameters, JointLimits};
-use controller_core::joint::DOF;
-use controller_core::law::limits::joint_limits;
 use controller_core::task::LevelLimits;
 use controller_core::{Controller, MakeController};
 use serde::Deserialize;
 
 use crate::invalid::Invalid;
-use crate::ranges::{
-    JOINT_ACCELERATION, JOINT_GAIN, LEVEL_SPEED_M_S, MARGIN_DEG, MOBILITY, SPEED_SHARE,
-};
+use crate::ranges::{LEVEL_SPEED_M_S, MOBILITY};
 
 /// Which law the controller has.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -50,24 +45,6 @@ pub struct LevelLimitsSpec {
     pub stiff_mobility: Option<f64>,
 }
 
-/// Limits of the joints, each in the place of what the arm says or a rule makes of it.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct JointLimitsSpec {
-    /// alpha \[rad/s2\].
-    pub acceleration: Option<[f64; DOF]>,
-    /// A \[rad/s2\].
-    pub braking: Option<[f64; DOF]>,
-    /// kv \[1/s\].
-    pub speed_gain: Option<[f64; DOF]>,
-    /// k \[1/s\].
-    pub position_gain: Option<f64>,
-    /// Before the end of a range \[deg\].
-    pub margin_deg: Option<f64>,
-    /// Share of the speed limit.
-    pub speed_share: Option<f64>,
-}
-
 impl LevelLimitsSpec {
     /// # Errors
     /// A number outside its range.
@@ -105,45 +82,5 @@ impl LevelLimitsSpec {
             lost_speed: self.lost_speed_m_s.unwrap_or(lost_speed),
             stiff_mobility: self.stiff_mobility.unwrap_or(stiff_mobility),
         }
-    }
-}
-
-impl JointLimitsSpec {
-    /// # Errors
-    /// A number outside its range.
-    pub(super) fn validate(&self) -> Result<(), Invalid> {
-        for (name, range, values) in [
-            ("acceleration", JOINT_ACCELERATION, &self.acceleration),
-            ("braking", JOINT_ACCELERATION, &self.braking),
-            ("speed_gain", JOINT_GAIN, &self.speed_gain),
-        ] {
-            for &value in values.iter().flatten() {
-                range.check(name, value)?;
-            }
-        }
-        for (name, range, value) in [
-            ("position_gain", JOINT_GAIN, self.position_gain),
-            ("margin_deg", MARGIN_DEG, self.margin_deg),
-            ("speed_share", SPEED_SHARE, self.speed_share),
-        ] {
-            if let Some(value) = value {
-                range.check(name, value)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Of this arm, in cycles of `cycle_s` \[s\]; nothing of tables that make no arm.
-    pub(super) fn of_arm(&self, arm: &ArmParameters, cycle_s: f64) -> Option<JointLimits> {
-        let model = ArmModel::<f64>::new(arm).ok()?;
-        let own = joint_limits(arm, &model, cycle_s, 0);
-        Some(JointLimits {
-            acceleration: self.acceleration.unwrap_or(own.acceleration),
-            braking: self.braking.unwrap_or(own.braking),
-            speed_gain: self.speed_gain.unwrap_or(own.speed_gain),
-            position_gain: self.position_gain.unwrap_or(own.position_gain),
-            margin: self.margin_deg.map_or(own.margin, f64::to_radians),
-            speed_share: self.speed_share.unwrap_or(own.speed_share),
-        })
     }
 }

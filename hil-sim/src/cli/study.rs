@@ -51,7 +51,7 @@ struct LimitsOptions {
     /// Sets of runs: ordered, pass, wrist, random, push, give, saturation [default: all that there are]
     #[arg(long = "set", num_args = 1..)]
     sets: Vec<String>,
-    /// The arm; others than lwr_iv have the sets pass and random
+    /// The arm, by its name or its arm file; others than lwr_iv have the sets pass and random
     #[arg(long, default_value = "lwr_iv")]
     arm: String,
     /// How it is simulated: ideal, realistic

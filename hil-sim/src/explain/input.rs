@@ -1,5 +1,7 @@
 //! The state to explain, as JSON.
 
+use std::path::Path;
+
 use controller_core::joint::{DOF, Vector3};
 use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
@@ -7,6 +9,7 @@ use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::TorqueLaw;
+use cell::arm::robot::Robot;
 use cell::invalid::Invalid;
 use cell::names::Named;
 use cell::ranges::{LEVELS, QUATERNION_NORM, ROWS, Range};
@@ -23,8 +26,8 @@ const INTERVAL_S: Range<f64> = Range::above(0.0, 10.0);
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
-    /// Name of the arm, one of the crate `arms`.
-    pub robot: String,
+    /// The arm: a name, or an arm file.
+    pub robot: Robot,
     /// How it is mounted; as its table says unless given.
     #[serde(default)]
     pub mount: Option<Mount>,
@@ -109,16 +112,19 @@ pub struct ObserverStep {
 }
 
 impl Input {
-    /// Reads and checks a state.
+    /// Reads and checks a state from `folder`, in which an arm file is looked for.
     ///
     /// # Errors
     /// The first field that cannot be used, by its path.
-    pub fn parse(text: &str) -> Result<Self, Invalid> {
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, Invalid> {
         if text.trim().is_empty() {
             let allowed = "a JSON object, as in docs/explain.md";
             return Err(Invalid::new("state", "empty", allowed));
         }
-        reader::json(text, Self::validate)
+        reader::json(text, |state: &mut Self| {
+            state.robot.find(folder)?;
+            state.validate()
+        })
     }
 
     fn validate(&self) -> Result<(), Invalid> {
@@ -156,7 +162,8 @@ impl Input {
     /// # Errors
     /// What of robot, mount and tool cannot be used.
     pub fn arm(&self) -> Result<EquippedArm, Invalid> {
-        EquippedArm::new(&self.robot, self.mount.as_ref(), self.tool.as_ref())
+        let (mount, tool) = (self.mount.as_ref(), self.tool.as_ref());
+        EquippedArm::equipped(self.robot.table()?, mount, tool)
     }
 
     /// The law.

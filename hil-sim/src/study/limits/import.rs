@@ -168,7 +168,7 @@ fn read(text: impl Read, arm: &EquippedArm) -> Result<Case, Invalid> {
     let Some(json) = first.strip_prefix("# ") else {
         return Err(Invalid::new("line 1", first, "'# ' and JSON"));
     };
-    let head: Head = reader::json(json, |head: &Head| head.validate(arm))?;
+    let head: Head = reader::json(json, |head: &mut Head| head.validate(arm))?;
     let mut levels = Vec::new();
     for (index, level) in head.levels.iter().enumerate() {
         let place = |error: Invalid| error.in_list("levels", index).within("line 1");

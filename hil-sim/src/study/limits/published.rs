@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use cell::invalid::Invalid;
 use cell::names::{Named, PlantKind};
-use cell::scenario::EquippedArm;
+use cell::arm::robot::Robot;
 use controller_core::arm::{ArmModel, ArmParameters};
 use controller_core::law::limits::joint_limits;
 
@@ -60,7 +60,7 @@ pub fn arms_in_the_table() -> Vec<(ArmParameters, &'static str)> {
         Some(joint_limits(arm, &model, CYCLE_S, 0))
     };
     let mut all = Vec::new();
-    for name in EquippedArm::names() {
+    for name in Robot::names() {
         let Ok(arm) = EquippedArm::new(name, None, None) else {
             continue;
         };
