@@ -6,9 +6,10 @@
 
 use std::fmt::Write as _;
 
+use cell::arm::robot::Robot;
 use cell::invalid::Invalid;
 use cell::names::{Named, PlantKind};
-use cell::arm::robot::Robot;
+use cell::scenario::EquippedArm;
 use controller_core::arm::{ArmModel, ArmParameters};
 use controller_core::law::limits::joint_limits;
 
