@@ -1,11 +1,12 @@
 //! A scenario ends the same way whether the controller's answers go through the datagrams of the
-//! robot link or straight to the arm: binary32, counters, phases and user data change nothing else.
+//! robot link or straight to the arm: binary32, counters, phases and user data change nothing.
+//! What a direct run changes besides, its start and its speeds, decides in few files.
 
 mod scenarios;
 
 use std::fmt;
 
-use cell::names::MeasurementKind::{self, Fri, LikeFri};
+use cell::names::MeasurementKind::{self, Direct, Fri, LikeFri};
 use cell::names::NullStiffness;
 use cell::scenario::Scenario;
 use hil_sim::controllers::TorqueLaw;
@@ -16,6 +17,13 @@ use scenarios::Case;
 
 /// Faults of the two may be so far apart \[s\].
 const APART_S: f64 = 0.02;
+
+/// Files in which the conditions of a direct run decide, in three of them near the limit of level 1:
+/// - 103: let go at time 0 with r = 0, the arm sinks under wrong masses until r knows them;
+/// - 154: by estimated speeds the arm leaves its range 0.04 s earlier;
+/// - 161: dead time delays gravity too, which the robot of FRI adds by itself;
+/// - 221: true speeds, where those over FRI lag.
+const OTHER_CONDITIONS: [u64; 4] = [103, 154, 161, 221];
 
 /// How a run ended.
 struct Outcome {
@@ -102,16 +110,16 @@ fn run(case: &Case, measurement: MeasurementKind) -> Outcome {
     Outcome::of(&summary.expect("nothing is written"))
 }
 
-/// Runs all both ways: the numbers of those that end differently.
-fn differing(numbers: std::ops::Range<u64>) -> Vec<u64> {
+/// Runs all over FRI and the `other` way: the numbers of those that end differently.
+fn differing(numbers: std::ops::Range<u64>, other: MeasurementKind) -> Vec<u64> {
     let mut differing = Vec::new();
     let mut ends = [0; 5];
     for number in numbers {
         let case = scenarios::case(number);
-        let (like, over) = (run(&case, LikeFri), run(&case, Fri));
-        ends[like.verdict.map_or(4, |verdict| verdict as usize)] += 1;
-        if !like.agrees(&over) {
-            println!("{number}\n  like fri {like}\n  over fri {over}");
+        let (without, over) = (run(&case, other), run(&case, Fri));
+        ends[without.verdict.map_or(4, |verdict| verdict as usize)] += 1;
+        if !without.agrees(&over) {
+            println!("{number}\n  {other:?} {without}\n  Fri {over}");
             differing.push(number);
         }
     }
@@ -121,11 +129,22 @@ fn differing(numbers: std::ops::Range<u64>) -> Vec<u64> {
 
 #[test]
 fn with_and_without_datagrams_runs_end_alike() {
-    assert_eq!(differing(0..12), Vec::<u64>::new());
+    assert_eq!(differing(0..12, LikeFri), Vec::<u64>::new());
+}
+
+#[test]
+fn direct_runs_end_alike() {
+    assert_eq!(differing(0..12, Direct), Vec::<u64>::new());
 }
 
 #[test]
 #[ignore = "minutes without --release"]
 fn three_hundred_end_alike() {
-    assert_eq!(differing(0..300), Vec::<u64>::new());
+    assert_eq!(differing(0..300, LikeFri), Vec::<u64>::new());
+}
+
+#[test]
+#[ignore = "minutes without --release"]
+fn three_hundred_direct_runs_end_alike() {
+    assert_eq!(differing(0..300, Direct), OTHER_CONDITIONS);
 }

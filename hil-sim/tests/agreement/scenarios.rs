@@ -79,7 +79,7 @@ pub fn case(number: u64) -> Case {
     // A limit that some keep and some do not, in the unit of the level.
     let unit = if plan.orientation { "mrad" } else { "mm" };
     let below = draw.within(0.5, 20.0);
-    for measurement in ["like-fri", "fri"] {
+    for measurement in ["direct", "like-fri", "fri"] {
         text += &format!(
             "[[limit]]\nplant = '{}'\ncontacts = true\nmeasurement = '{measurement}'\n\
              dead_cycles = {dead_cycles}\nmetric = 'level1_max_{unit}'\nbelow = {below}\n",
