@@ -16,6 +16,17 @@ pub const fn diagonal<const N: usize>(values: [f64; N]) -> [[f64; N]; N] {
     matrix
 }
 
+/// Whether a gain couples nothing: zeros everywhere off the diagonal.
+pub(crate) fn is_diagonal(matrix: &[[f64; DOF]; DOF]) -> bool {
+    let rows = matrix.iter().enumerate();
+    rows.flat_map(|(i, row)| {
+        row.iter()
+            .enumerate()
+            .map(move |(j, &entry)| (i == j, entry))
+    })
+    .all(|(on, entry)| on || entry == 0.0)
+}
+
 /// Checks that the block of `matrix` on the rows where `used` is true is finite, up to
 /// [`GAIN_MAX`], symmetric and positive definite; the rest is not looked at. `level` is
 /// 0 for the null space.

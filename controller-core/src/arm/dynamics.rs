@@ -64,8 +64,9 @@ impl<T: Real> Dynamics<T> {
             link: if i == 0 { &arm.base } else { &arm.links[i - 1] },
         };
         let base = Motion {
-            spin: [T::ZERO; 3],
-            velocity: [T::ZERO; 3],
+            // At rest; as numbers, because arrays of constant zeros are cleared by calls.
+            spin: kinematics.angular_velocity[0].into(),
+            velocity: kinematics.origin_velocity[0].into(),
             gravity: arm.gravity.into(),
         };
         let mut motion = [base; DOF];

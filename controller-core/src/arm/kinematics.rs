@@ -150,19 +150,37 @@ impl<T: Real> Kinematics<T> {
             jacobian: [zeros(); 3],
             jacobian_dot: [zeros(); 3],
         };
-        let column = |of: &[JointVector<T>; 3], i| Vector3::from([of[0][i], of[1][i], of[2][i]]);
-        for i in 0..link.number() {
-            let (axis, axis_rate) = (column(&self.axis, i), column(&self.axis_rate, i));
-            let lever = motion.x - column(&self.joint_origin, i);
-            let lever_rate = motion.dx - column(&self.joint_velocity, i);
-            let j = axis.cross(&lever);
-            let dj = axis_rate.cross(&lever) + axis.cross(&lever_rate);
-            for row in 0..3 {
-                rows.jacobian[row][i] = j[row];
-                rows.jacobian_dot[row][i] = dj[row];
-            }
+        for axis in 0..3 {
+            let (row, rate) = (&mut rows.jacobian[axis], &mut rows.jacobian_dot[axis]);
+            self.set_point_row(axis, link, motion, row, rate);
         }
         rows
+    }
+
+    /// Row `axis`, counted from 0, of [`Kinematics::point_jacobian`].
+    #[inline(always)]
+    pub(crate) fn set_point_row(
+        &self,
+        axis: usize,
+        link: Link,
+        motion: &PointMotion<T>,
+        row: &mut JointVector<T>,
+        rate: &mut JointVector<T>,
+    ) {
+        // The entries that a cross product has in this row, y and z in row x.
+        let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
+        for i in 0..DOF {
+            let (z_b, z_c) = (self.axis[b][i], self.axis[c][i]);
+            let (dz_b, dz_c) = (self.axis_rate[b][i], self.axis_rate[c][i]);
+            let lever_b = motion.x[b] - self.joint_origin[b][i];
+            let lever_c = motion.x[c] - self.joint_origin[c][i];
+            let lever_rate_b = motion.dx[b] - self.joint_velocity[b][i];
+            let lever_rate_c = motion.dx[c] - self.joint_velocity[c][i];
+            row[i] = z_b * lever_c - z_c * lever_b;
+            rate[i] = (dz_b * lever_c - dz_c * lever_b) + (z_b * lever_rate_c - z_c * lever_rate_b);
+        }
+        cut(link, row);
+        cut(link, rate);
     }
 
     /// Orientation and angular velocity of a link.
@@ -182,23 +200,36 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn angular_jacobian(&self, link: Link) -> JacobianRows<T> {
         let mut rows = JacobianRows {
-            jacobian: self.axis,
-            jacobian_dot: self.axis_rate,
+            jacobian: [zeros(); 3],
+            jacobian_dot: [zeros(); 3],
         };
-        rows.cut(link);
+        for axis in 0..3 {
+            let (row, rate) = (&mut rows.jacobian[axis], &mut rows.jacobian_dot[axis]);
+            self.set_angular_row(axis, link, row, rate);
+        }
         rows
+    }
+
+    /// Row `axis`, counted from 0, of [`Kinematics::angular_jacobian`].
+    #[inline(always)]
+    pub(crate) fn set_angular_row(
+        &self,
+        axis: usize,
+        link: Link,
+        row: &mut JointVector<T>,
+        rate: &mut JointVector<T>,
+    ) {
+        (*row, *rate) = (self.axis[axis % 3], self.axis_rate[axis % 3]);
+        cut(link, row);
+        cut(link, rate);
     }
 }
 
-impl<T: Real> JacobianRows<T> {
-    /// Joints behind `link` do not move it.
-    #[inline(always)]
-    fn cut(&mut self, link: Link) {
-        for row in self.jacobian.iter_mut().chain(&mut self.jacobian_dot) {
-            if let Some(behind) = row.as_mut_slice().get_mut(link.number()..) {
-                behind.fill(T::ZERO);
-            }
-        }
+/// Joints behind `link` do not move it.
+#[inline(always)]
+fn cut<T: Real>(link: Link, row: &mut JointVector<T>) {
+    for i in link.number()..DOF {
+        row[i] = T::ZERO;
     }
 }
 

@@ -64,7 +64,10 @@ impl<T: Real, const N: usize> Recorder<T, N> {
     pub fn push(&mut self, measurement: &Measurement<T>, step: &Step<T>) {
         if let Some(place) = self.cycles.get_mut(self.place) {
             place.number = self.next;
-            place.measurement = *measurement;
+            // One by one: all of it is copied by a call.
+            place.measurement.q = measurement.q;
+            place.measurement.dq = measurement.dq;
+            place.measurement.interval_s = measurement.interval_s;
             place.torque = step.torque;
             place.residual = step.residual;
             place.status = step.status;

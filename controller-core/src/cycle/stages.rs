@@ -197,10 +197,9 @@ fn exact_law<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &m
 }
 
 fn joint_state<T: Real>(_: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
-    data.joints = JointState {
-        q: input.measurement.q,
-        dq: input.measurement.dq,
-    };
+    // One by one: both together are copied by a call.
+    data.joints.q = input.measurement.q;
+    data.joints.dq = input.measurement.dq;
 }
 
 fn kinematics<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
@@ -396,6 +395,7 @@ fn bounds<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data
 fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.projection.update(&Wished {
         acceleration: &data.wish.acceleration,
+        torque: &data.wish.torque,
         bounds: &data.bounds,
         levels: &controller.levels,
         dynamics: &data.dynamics,
@@ -406,7 +406,7 @@ fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut 
 }
 
 fn projected_demand<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    data.demand = TorqueDemand(data.wish.torque + data.projection.torque);
+    data.demand = TorqueDemand(data.projection.torque);
 }
 
 /// The exact law's.

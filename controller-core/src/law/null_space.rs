@@ -89,6 +89,8 @@ pub struct Compliance<T: Real> {
     pub damping: Damping<T>,
     /// Where q_d comes from.
     pub posture: Posture,
+    /// Whether K_q, and D, couple no joints: then [`Compliance::force`] reads their diagonals.
+    decoupled: [bool; 2],
 }
 
 /// [`NullDamping`] in the precision of the controller.
@@ -109,6 +111,13 @@ impl<T: Real> Compliance<T> {
                 NullDamping::Inertia(rate) => Damping::Inertia(T::from_f64(*rate)),
             },
             posture: null_space.posture,
+            decoupled: [
+                gain::is_diagonal(&null_space.stiffness),
+                match &null_space.damping {
+                    NullDamping::Joint(damping) => gain::is_diagonal(damping),
+                    NullDamping::Inertia(_) => false,
+                },
+            ],
         }
     }
 
@@ -126,21 +135,50 @@ impl<T: Real> Compliance<T> {
             Damping::Joint(damping) => (damping, T::ONE),
             Damping::Inertia(rate) => (&dynamics.mass_matrix, *rate),
         };
+        let [stiffness_decoupled, damping_decoupled] = self.decoupled;
         let mut force = rows.rate_transposed_times(&motion.task_momentum) - dynamics.coriolis;
         for j in 0..DOF {
-            let (velocity, error) = (motion.task_velocity[j], posture_error[j]);
+            let velocity = motion.task_velocity[j];
             for i in 0..DOF {
                 force[i] -= dynamics.coriolis_matrix[(j, i)] * velocity;
-                force[i] += self.stiffness[(i, j)] * error;
             }
         }
-        for j in 0..DOF {
-            let speed = motion.null_velocity[j] * rate;
-            for i in 0..DOF {
-                force[i] -= damping[(i, j)] * speed;
-            }
-        }
+        add_product(
+            &mut force,
+            &self.stiffness,
+            stiffness_decoupled,
+            posture_error,
+        );
+        let opposed = motion.null_velocity * -rate;
+        add_product(&mut force, damping, damping_decoupled, &opposed);
         force
+    }
+}
+
+/// Adds a matrix times x; of one that couples no joints the diagonal.
+#[inline(always)]
+fn add_product<T: Real>(
+    sum: &mut JointVector<T>,
+    matrix: &JointMatrix<T>,
+    decoupled: bool,
+    x: &JointVector<T>,
+) {
+    if decoupled {
+        for i in 0..DOF {
+            sum[i] += matrix[(i, i)] * x[i];
+        }
+    } else {
+        add_coupled(sum, matrix, x);
+    }
+}
+
+/// Behind a call: it is in the flash once.
+#[inline(never)]
+fn add_coupled<T: Real>(sum: &mut JointVector<T>, matrix: &JointMatrix<T>, x: &JointVector<T>) {
+    for j in 0..DOF {
+        for i in 0..DOF {
+            sum[i] += matrix[(i, j)] * x[j];
+        }
     }
 }
 

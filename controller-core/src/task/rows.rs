@@ -3,7 +3,7 @@
 use super::followed::{Followed, Motion};
 use super::level::{Level, LevelPoint, Levels};
 use super::{Axes, orientation};
-use crate::arm::kinematics::{JacobianRows, Kinematics};
+use crate::arm::kinematics::Kinematics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
 use crate::ranges::MAX_ROWS;
@@ -68,22 +68,25 @@ impl<T: Real> TaskRows<T> {
                     let motion = kinematics.point(*link, offset);
                     let error = desired.position() - motion.x;
                     let commanded = Commanded::new(level, desired, error, motion.dx);
-                    let rows = kinematics.point_jacobian(*link, &motion);
-                    self.push(number, level.axes, &commanded, joints, &rows);
+                    self.push(number, level.axes, &commanded, joints, |axis, row, rate| {
+                        kinematics.set_point_row(axis, *link, &motion, row, rate);
+                    });
                 }
                 LevelPoint::Orientation(link, turn) => {
                     let motion = kinematics.link(*link);
                     let actual = orientation::of_frame(&motion.rotation, turn);
                     let error = orientation::chord(&desired.place, &actual);
                     let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
-                    let rows = kinematics.angular_jacobian(*link);
-                    self.push(number, level.axes, &commanded, joints, &rows);
+                    self.push(number, level.axes, &commanded, joints, |axis, row, rate| {
+                        kinematics.set_angular_row(axis, *link, row, rate);
+                    });
                 }
             }
         }
     }
 
-    /// The rows of the axes that the level controls.
+    /// The rows of the axes that the level controls; `set_row` writes those of J and dJ/dt of
+    /// an axis in their place.
     #[inline(always)]
     fn push(
         &mut self,
@@ -91,20 +94,20 @@ impl<T: Real> TaskRows<T> {
         axes: Axes,
         commanded: &Commanded<T>,
         joints: &JointState<T>,
-        all: &JacobianRows<T>,
+        set_row: impl Fn(usize, &mut JointVector<T>, &mut JointVector<T>),
     ) {
         let start = self.count;
         self.shortened.insert_if(number, commanded.shortened);
         for axis in 0..3 {
             let place = self.count;
             if axes.contains(axis) && place < MAX_ROWS {
+                let rate = &mut self.jacobian_dot[place];
+                set_row(axis, &mut self.jacobian[place], rate);
                 let mut bias = T::ZERO;
                 for i in 0..DOF {
-                    bias += all.jacobian_dot[axis][i] * joints.dq[i];
+                    bias += rate[i] * joints.dq[i];
                 }
                 self.level_start[place] = start;
-                self.jacobian[place] = all.jacobian[axis];
-                self.jacobian_dot[place] = all.jacobian_dot[axis];
                 self.bias[place] = bias;
                 self.commanded[place] = commanded.acceleration[axis];
                 self.error[place] = commanded.error[axis];

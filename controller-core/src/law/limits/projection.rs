@@ -30,7 +30,7 @@ use crate::task::rows::TaskRows;
 pub struct Projection<T: Real> {
     /// a \[rad/s2\]: within the bounds.
     pub acceleration: JointVector<T>,
-    /// Torque \[Nm\] by which it differs from that of the wish, M (a - a*).
+    /// Torque \[Nm\] that gives it: that of the wish and M (a - a*).
     pub torque: JointVector<T>,
     /// Joints that are at their lower bound, and at their upper one.
     pub at_bound: [IndexSet; 2],
@@ -52,6 +52,8 @@ pub struct Projection<T: Real> {
 /// What is projected, and by what measure.
 pub(crate) struct Wished<'a, T: Real> {
     pub acceleration: &'a JointVector<T>,
+    /// Torque \[Nm\] that gives it.
+    pub torque: &'a JointVector<T>,
     pub bounds: &'a AccelerationBounds<T>,
     pub levels: &'a Levels<T>,
     pub dynamics: &'a Dynamics<T>,
@@ -87,19 +89,24 @@ impl<T: Real> Projection<T> {
     pub(crate) fn update(&mut self, wished: &Wished<'_, T>) {
         if wished.bounds.contain(wished.acceleration) {
             self.acceleration = *wished.acceleration;
-            self.torque = zeros();
+            self.torque = *wished.torque;
             self.at_bound = [IndexSet::NONE; 2];
             (self.pivots, self.unresolved) = (0, false);
-            self.disturbance = [T::ZERO; MAX_LEVELS];
             self.power = T::ZERO;
+            for (level, _) in (0..MAX_LEVELS).zip(wished.levels.as_slice()) {
+                self.disturb(level, T::ZERO);
+            }
         } else {
             self.project(wished);
         }
-        let share = T::from_f64(DISTURBANCE_SMOOTHING);
-        let levels = wished.levels.as_slice().iter();
-        for ((smoothed, &now), _) in self.smoothed.iter_mut().zip(&self.disturbance).zip(levels) {
-            *smoothed += (now - *smoothed) * share;
-        }
+    }
+
+    /// What the bounds take from a level.
+    #[inline(always)]
+    fn disturb(&mut self, level: usize, disturbance: T) {
+        let smoothed = &mut self.smoothed[level];
+        *smoothed += (disturbance - *smoothed) * T::from_f64(DISTURBANCE_SMOOTHING);
+        self.disturbance[level] = disturbance;
     }
 
     #[inline(never)]
@@ -151,17 +158,17 @@ impl<T: Real> Projection<T> {
     #[inline(always)]
     fn record(&mut self, wished: &Wished<'_, T>) {
         let difference = self.acceleration - wished.acceleration;
-        self.torque = wished.dynamics.mass_matrix * difference;
-        self.power = wished.null_velocity.dot(&self.torque);
-        let levels = wished.levels.as_slice().iter();
-        for (level, disturbance) in levels.zip(&mut self.disturbance) {
+        let torque = wished.dynamics.mass_matrix * difference;
+        self.torque = wished.torque + torque;
+        self.power = wished.null_velocity.dot(&torque);
+        for (number, level) in (0..MAX_LEVELS).zip(wished.levels.as_slice()) {
             let mut squared = T::ZERO;
             let rows = wished.rows.jacobian.get(level.rows()).unwrap_or(&[]);
             for row in rows.iter().take(3) {
                 let along = row.dot(&difference);
                 squared += along * along;
             }
-            *disturbance = squared.square_root() * level.length;
+            self.disturb(number, squared.square_root() * level.length);
         }
     }
 }
@@ -279,18 +286,23 @@ impl<T: Real> Search<T> {
     fn advance(&mut self, pushed: usize, step: T) -> (usize, usize) {
         let row = self.tableau.row(pushed);
         // Above 1 a multiplier changes its sign on the way.
-        let (mut most, mut dropped) = (T::ONE, NONE);
+        let (mut most, mut ways) = (T::ONE, [T::ZERO; DOF]);
         for i in 0..DOF {
-            let way = row[i] * step * self.held[i] / self.point[i];
-            if way > most {
-                (most, dropped) = (way, i);
+            ways[i] = row[i] * step * self.held[i] / self.point[i];
+            most = most.most(ways[i]);
+        }
+        let mut dropped = NONE;
+        if most > T::ONE {
+            for (i, &way) in ways.iter().enumerate() {
+                if way == most {
+                    dropped = i;
+                }
             }
+        } else {
+            self.choice[pushed] = T::ZERO;
         }
         let step = step / most;
         self.so_far += step;
-        if dropped == NONE {
-            self.choice[pushed] = T::ZERO;
-        }
         (dropped, self.go(pushed, step))
     }
 

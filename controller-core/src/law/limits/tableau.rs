@@ -79,20 +79,25 @@ impl<T: Real> Tableau<T> {
     #[inline(never)]
     pub fn sweep(&mut self, k: usize, sign: T) {
         let k = k % WIDTH;
-        let row = self.rows[k];
-        let inverse = T::ONE / row[k];
+        let (row, inverse) = (self.rows[k], T::ONE / self.rows[k][k]);
         for i in 0..DOF {
             let scaled = row[i] * inverse;
-            let other = &mut self.rows[i];
-            for j in 0..DOF {
-                other[j] -= scaled * row[j];
+            for j in 0..=i {
+                let entry = self.rows[i][j] - scaled * row[j];
+                self.set(i, j, entry);
             }
-            other[k] = scaled * sign;
         }
         let signed = inverse * sign;
         for j in 0..DOF {
-            self.rows[k][j] = row[j] * signed;
+            self.set(k, j, row[j] * signed);
         }
         self.rows[k][k] = -inverse;
+    }
+
+    /// Entries (i, j) and (j, i).
+    #[inline(always)]
+    fn set(&mut self, i: usize, j: usize, entry: T) {
+        self.rows[i][j] = entry;
+        self.rows[j][i] = entry;
     }
 }

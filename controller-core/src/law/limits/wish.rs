@@ -46,6 +46,13 @@ pub struct Wish<T: Real> {
     /// What the rows of each level get by the stages down to its own, in cycles in which a level
     /// is released.
     of_rows: [T; MAX_ROWS],
+    // Of the cycle alone; here, because on the stack they would have to be cleared first.
+    /// u: what the stages so far ask for, whitened.
+    whitened: JointVector<T>,
+    /// ur: L^-1 r, less what the levels so far have compensated.
+    residual: JointVector<T>,
+    /// Parts along the directions of what was split last.
+    parts: [T; MAX_ROWS],
 }
 
 /// What the wish is made from.
@@ -63,24 +70,86 @@ pub(crate) struct Ask<'a, T: Real> {
     pub residual: &'a JointVector<T>,
 }
 
-/// The stages so far.
-struct Sum<T: Real> {
-    /// u: what they ask for, whitened.
-    whitened: JointVector<T>,
-    /// L^-T u \[rad/s2\].
-    acceleration: JointVector<T>,
-    /// C dq + g - r + L u \[Nm\].
-    torque: JointVector<T>,
-    /// ur: L^-1 r, less what the levels so far have compensated.
-    residual: JointVector<T>,
-    /// Parts along the directions of what was split last.
-    parts: [T; MAX_ROWS],
+/// `share`, or what of `torque` \[Nm\] there is room for on top of `before` within `limit`.
+#[inline(always)]
+fn torque_share<T: Real>(
+    mut share: T,
+    before: &JointVector<T>,
+    torque: &JointVector<T>,
+    limit: &JointVector<T>,
+) -> T {
+    let least = T::from_f64(1e-9);
+    for i in 0..DOF {
+        // The room on the side of the torque, and the torque, both times its size.
+        let size = torque[i].magnitude().most(least);
+        let room = limit[i] * size - before[i] * torque[i];
+        share = share.least(room.most(T::ZERO) / (size * size));
+    }
+    share
 }
 
-impl<T: Real> Sum<T> {
+impl<T: Real> Wish<T> {
+    /// No wish yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            acceleration: zeros(),
+            torque: zeros(),
+            level_share: [T::ONE; MAX_LEVELS],
+            null_share: T::ONE,
+            scaled: IndexSet::NONE,
+            shaped: IndexSet::NONE,
+            leak: [T::ZERO; MAX_LEVELS],
+            of_rows: [T::ZERO; MAX_ROWS],
+            whitened: zeros(),
+            residual: zeros(),
+            parts: [T::ZERO; MAX_ROWS],
+        }
+    }
+
+    /// Level by level, then the null space. Behind a call: what it reads lies far apart.
+    #[inline(never)]
+    pub(crate) fn update(&mut self, ask: &Ask<'_, T>) {
+        let (dynamics, spectrum) = (ask.dynamics, ask.spectrum);
+        let cholesky = &dynamics.cholesky;
+        // C dq + g - r + L u.
+        self.torque = dynamics.coriolis + dynamics.gravity - ask.residual;
+        self.residual = cholesky.solve_lower(ask.residual);
+        (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
+        let released = spectrum.released.any();
+        for (number, level) in ask.levels.as_slice().iter().enumerate().take(MAX_LEVELS) {
+            let (mut command, shaped) = self.command(ask, number, level);
+            if released {
+                // Once more: of a direction that a level above has released, the share that it
+                // has been given back twice.
+                command = left_by(spectrum.above(level), &command, &mut self.parts);
+            }
+            let share = if number > 0 {
+                let before = self.torque + cholesky.lower_times(&self.residual);
+                self.add(ask, &command, Some(&before))
+            } else {
+                self.add(ask, &command, None)
+            };
+            (self.level_share[number], self.leak[number]) = (share, T::ZERO);
+            self.shaped.insert_if(number, shaped);
+            self.scaled.insert_if(number, share < T::ONE);
+            if released {
+                let known = self.whitened + self.residual;
+                set_rows(&mut self.of_rows, level, spectrum, &known);
+            }
+        }
+        let command = self.null_command(ask);
+        let before = self.torque;
+        self.null_share = self.add(ask, &command, Some(&before));
+        self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
+        if released {
+            self.set_leaks(ask);
+        }
+    }
+
     /// Adds a stage; returns the share of it that is added: no joint is asked for more than
-    /// alpha, and none for more torque than there is on top of `before` \[Nm\], if that counts.
-    /// Behind a call: it is in the flash once.
+    /// alpha, and none for more torque than there is on top of `before` \[Nm\]. The first stage
+    /// has nothing before it. Behind a call: it is in the flash once.
     #[inline(never)]
     fn add(
         &mut self,
@@ -99,10 +168,17 @@ impl<T: Real> Sum<T> {
         let torque = cholesky.lower_times(stage);
         if let Some(before) = before {
             share = torque_share(share, before, &torque, ask.torque_limit);
+            for i in 0..DOF {
+                self.whitened[i] += stage[i] * share;
+                self.acceleration[i] += acceleration[i] * share;
+            }
+        } else {
+            for i in 0..DOF {
+                self.whitened[i] = stage[i] * share;
+                self.acceleration[i] = acceleration[i] * share;
+            }
         }
         for i in 0..DOF {
-            self.whitened[i] += stage[i] * share;
-            self.acceleration[i] += acceleration[i] * share;
             self.torque[i] += torque[i] * share;
         }
         share
@@ -121,22 +197,21 @@ impl<T: Real> Sum<T> {
         let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
         let bias = rows.bias.get(level.rows()).unwrap_or(&[]);
         let (mut wanted, mut speed) = ([T::ZERO; 3], [T::ZERO; 3]);
-        let known = self.whitened + self.residual;
-        for (k, direction) in directions.iter().enumerate().take(3) {
-            if let (Some(along), Some(commanded), Some(bias)) =
-                (along.get(k), commanded.get(k), bias.get(k))
-            {
-                wanted[k] = *commanded - *bias;
-                if number > 0 {
-                    wanted[k] -= direction.row.dot(&known);
-                }
-                direction.add_part(*along, &mut speed);
+        let given = commanded.iter().zip(bias).zip(along);
+        for (k, (direction, ((commanded, bias), along))) in
+            directions.iter().zip(given).enumerate().take(3)
+        {
+            wanted[k] = *commanded - *bias;
+            if number > 0 {
+                wanted[k] -= direction.row.dot(&self.whitened) + direction.row.dot(&self.residual);
             }
+            direction.add_part(*along, &mut speed);
         }
         let damped = level.damping_of_rows(&speed);
         let mut shaped = rows.shortened.contains(number);
-        let mut forces = [[T::ZERO; 2]; 3];
-        for (direction, force) in directions.iter().zip(&mut forces) {
+        let (mut forces, mut compensated) = ([T::ZERO; 3], [T::ZERO; 3]);
+        let parts = forces.iter_mut().zip(&mut compensated);
+        for (direction, (force, compensated)) in directions.iter().zip(parts) {
             let residual = direction.along.dot(&self.residual);
             let kept = direction.keep * residual;
             let own = direction.part(&damped);
@@ -149,21 +224,23 @@ impl<T: Real> Sum<T> {
             let most = level.filters.most_command(direction.mobility);
             let cut = asked.limited(-most, most);
             shaped |= cut != asked;
-            *force = [direction.drive * cut - direction.keep * own, kept];
+            *force = direction.drive * cut - direction.keep * own;
+            *compensated = kept;
         }
-        let mut command: JointVector<T> = zeros();
-        for (direction, [force, _]) in directions.iter().zip(&forces) {
+        let mut command = match directions {
+            [first, ..] => first.along * forces[0],
+            [] => zeros(),
+        };
+        for (direction, &force) in directions.iter().zip(&forces).skip(1) {
             for i in 0..DOF {
-                command[i] += direction.along[i] * *force;
+                command[i] += direction.along[i] * force;
             }
         }
-        let mut residual = self.residual;
-        for (direction, [_, kept]) in directions.iter().zip(&forces) {
+        for (direction, &compensated) in directions.iter().zip(&compensated) {
             for i in 0..DOF {
-                residual[i] -= direction.along[i] * *kept;
+                self.residual[i] -= direction.along[i] * compensated;
             }
         }
-        self.residual = residual;
         (command, shaped)
     }
 
@@ -177,96 +254,13 @@ impl<T: Real> Sum<T> {
         }
         left_by(ask.spectrum.directions(), &force, &mut self.parts) + self.residual
     }
-}
-
-/// `share`, or what of `torque` \[Nm\] there is room for on top of `before` within `limit`.
-#[inline(always)]
-fn torque_share<T: Real>(
-    mut share: T,
-    before: &JointVector<T>,
-    torque: &JointVector<T>,
-    limit: &JointVector<T>,
-) -> T {
-    let least = T::from_f64(1e-9);
-    for i in 0..DOF {
-        let (asked, before) = (torque[i], before[i]);
-        let towards = if asked < T::ZERO { -before } else { before };
-        let room = (limit[i] - towards).larger(T::ZERO);
-        let of_joint = room / asked.magnitude().larger(least);
-        share = share.least(of_joint);
-    }
-    share
-}
-
-impl<T: Real> Wish<T> {
-    /// No wish yet.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            acceleration: zeros(),
-            torque: zeros(),
-            level_share: [T::ONE; MAX_LEVELS],
-            null_share: T::ONE,
-            scaled: IndexSet::NONE,
-            shaped: IndexSet::NONE,
-            leak: [T::ZERO; MAX_LEVELS],
-            of_rows: [T::ZERO; MAX_ROWS],
-        }
-    }
-
-    /// Level by level, then the null space. Behind a call: what it reads lies far apart.
-    #[inline(never)]
-    pub(crate) fn update(&mut self, ask: &Ask<'_, T>) {
-        let (dynamics, spectrum) = (ask.dynamics, ask.spectrum);
-        let cholesky = &dynamics.cholesky;
-        let mut sum = Sum {
-            whitened: zeros(),
-            acceleration: zeros(),
-            torque: dynamics.coriolis + dynamics.gravity - ask.residual,
-            residual: cholesky.solve_lower(ask.residual),
-            parts: [T::ZERO; MAX_ROWS],
-        };
-        (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
-        let released = spectrum.released.any();
-        let levels = ask.levels.as_slice().iter();
-        let told = self.level_share.iter_mut().zip(&mut self.leak);
-        for (number, (level, (of_level, leak))) in levels.zip(told).enumerate() {
-            let (mut command, shaped) = sum.command(ask, number, level);
-            if released {
-                // Once more: of a direction that a level above has released, the share that it
-                // has been given back twice.
-                command = left_by(spectrum.above(level), &command, &mut sum.parts);
-            }
-            let share = if number > 0 {
-                let before = sum.torque + cholesky.lower_times(&sum.residual);
-                sum.add(ask, &command, Some(&before))
-            } else {
-                sum.add(ask, &command, None)
-            };
-            (*of_level, *leak) = (share, T::ZERO);
-            self.shaped.insert_if(number, shaped);
-            self.scaled.insert_if(number, share < T::ONE);
-            if released {
-                let known = sum.whitened + sum.residual;
-                set_rows(&mut self.of_rows, level, spectrum, &known);
-            }
-        }
-        let command = sum.null_command(ask);
-        let before = sum.torque;
-        self.null_share = sum.add(ask, &command, Some(&before));
-        self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
-        (self.acceleration, self.torque) = (sum.acceleration, sum.torque);
-        if released {
-            self.set_leaks(ask, &sum.whitened);
-        }
-    }
 
     /// What the levels get by all stages beyond what they get by those down to their own.
     #[inline(never)]
-    fn set_leaks(&mut self, ask: &Ask<'_, T>, whitened: &JointVector<T>) {
+    fn set_leaks(&mut self, ask: &Ask<'_, T>) {
         let mut all = [T::ZERO; MAX_ROWS];
         for (level, leak) in ask.levels.as_slice().iter().zip(&mut self.leak) {
-            set_rows(&mut all, level, ask.spectrum, whitened);
+            set_rows(&mut all, level, ask.spectrum, &self.whitened);
             let mut squared = T::ZERO;
             let rows = all.get(level.rows()).unwrap_or(&[]).iter();
             let own = self.of_rows.get(level.rows()).unwrap_or(&[]);
