@@ -47,7 +47,8 @@ pub(crate) fn sines_cosines<T: Real>(
     for (angle, &zero) in sines.iter_mut().zip(zero) {
         *angle -= zero;
     }
-    let mut cosines = [T::ZERO; ALIKE];
+    // As a copy: zeros would be cleared by a call.
+    let mut cosines = sines;
     for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
         (*sine, *cosine) = sine.sine_cosine();
     }

@@ -79,8 +79,11 @@ impl<T: Real> Observer<T> {
 
     /// Replaces the torque \[Nm\] in the input kept by [`Observer::set_input`].
     pub fn set_applied_torque(&mut self, torque: &JointVector<T>) {
-        self.input += torque - self.applied_torque;
-        self.applied_torque = *torque;
+        // Number by number: a vector from elsewhere is moved by a call.
+        for i in 0..DOF {
+            self.input[i] += torque[i] - self.applied_torque[i];
+            self.applied_torque[i] = torque[i];
+        }
     }
 }
 

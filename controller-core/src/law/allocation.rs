@@ -72,7 +72,10 @@ impl<T: Real> Allocation<T> {
 
     /// The next torque starts from `acting` \[Nm\].
     pub fn start_from(&mut self, acting: &JointVector<T>) {
-        self.torque = *acting;
+        // Number by number: a vector from elsewhere is moved by a call.
+        for i in 0..DOF {
+            self.torque[i] = acting[i];
+        }
         self.acts = true;
     }
 

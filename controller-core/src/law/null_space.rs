@@ -193,7 +193,8 @@ impl<T: Real> Damping<T> {
     }
 }
 
-/// A joint-space matrix from its rows.
+/// A joint-space matrix from its rows. Behind a call: it is in the flash once.
+#[inline(never)]
 pub(crate) fn matrix<T: Real>(rows: &[[f64; DOF]; DOF]) -> JointMatrix<T> {
     let mut matrix = zeros();
     for i in 0..DOF {

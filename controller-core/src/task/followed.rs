@@ -110,7 +110,9 @@ impl<T: Real> Followed<T> {
                     let way = turn(q, &followed.now.place) - w * interval_s;
                     let goes_on = at_once | followed.goes_on(&way, Kind::Orientation);
                     if goes_on {
-                        followed.now.place = *q;
+                        for entry in 0..4 {
+                            followed.now.place[entry] = q[entry];
+                        }
                         followed.follow(Kind::Orientation, w, dw);
                     }
                     goes_on

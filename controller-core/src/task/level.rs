@@ -84,19 +84,12 @@ impl<T: Real> Level<T> {
                 (LevelPoint::Orientation(link, turn), T::ZERO)
             }
         };
-        // The others are not read: whatever stands there stays out.
-        let used = |gain: &[[f64; 3]; 3]| {
-            Matrix3::from_fn(|row, column| {
-                let both = task.axes.contains(row) && task.axes.contains(column);
-                T::from_f64(if both { gain[row][column] } else { 0.0 })
-            })
-        };
         Self {
             tracked,
             axes: task.axes,
             reach,
-            stiffness: used(&task.gains.stiffness),
-            damping: used(&task.gains.damping),
+            stiffness: on_axes(&task.gains.stiffness, task.axes),
+            damping: on_axes(&task.gains.damping, task.axes),
             start,
             size: task.axes.count().min(3),
             row_damping: by_rows(&task.gains.damping, task.axes),
@@ -130,14 +123,24 @@ impl<T: Real> Level<T> {
     }
 }
 
-/// A gain by the rows of the controlled axes, zeros behind the last one.
+/// A gain on the controlled axes. The others are not read: whatever stands there stays out.
+/// Behind a call: it is in the flash once.
+#[inline(never)]
+fn on_axes<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> Matrix3<T> {
+    Matrix3::from_fn(|row, column| {
+        let both = axes.contains(row) && axes.contains(column);
+        T::from_f64(if both { gain[row][column] } else { 0.0 })
+    })
+}
+
+/// A gain by the rows of the controlled axes, zeros behind the last one. Behind a call, likewise.
+#[inline(never)]
 fn by_rows<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> [[T; 3]; 3] {
     let mut rows = [[T::ZERO; 3]; 3];
-    let used = gain.iter().zip(axes.flags()).filter(|(_, used)| *used);
-    for (row, (gain, _)) in rows.iter_mut().zip(used) {
-        let used = gain.iter().zip(axes.flags()).filter(|(_, used)| *used);
-        for (entry, (&gain, _)) in row.iter_mut().zip(used) {
-            *entry = T::from_f64(gain);
+    let used = || (0..3).filter(|&axis| axes.contains(axis));
+    for (row, i) in rows.iter_mut().zip(used()) {
+        for (entry, j) in row.iter_mut().zip(used()) {
+            *entry = T::from_f64(gain[i][j]);
         }
     }
     rows

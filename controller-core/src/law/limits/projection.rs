@@ -148,7 +148,7 @@ impl<T: Real> Projection<T> {
             for direction in wished.spectrum.of(level) {
                 let z = direction.mobility.larger(T::ZERO);
                 let held = z * z / (z * z * z + soft);
-                tableau.stiffen(&cholesky.solve_upper(&direction.along), held);
+                tableau.stiffen(cholesky, &direction.along, held);
             }
         }
         tableau.mirror();
@@ -253,16 +253,12 @@ impl<T: Real> Search<T> {
     #[inline(always)]
     fn exchange(&mut self, pushed: usize, last: bool) -> usize {
         let pivot = self.tableau.diagonal(pushed);
-        // Where nothing gives way to it any more the cut in the end keeps its bound.
-        let gives = pivot * self.weight[pushed] > T::PIVOT_SHARE;
-        let way = self.point[pushed] - self.bound[pushed];
-        let way = if gives { way } else { T::ZERO };
-        let step = way / if gives { pivot } else { T::ONE };
+        if pivot * self.weight[pushed] <= T::PIVOT_SHARE {
+            return self.pass_over(pushed);
+        }
+        let step = (self.point[pushed] - self.bound[pushed]) / pivot;
         let (dropped, worst) = self.advance(pushed, step);
         let done = dropped == NONE;
-        if !gives {
-            return self.choose(worst);
-        }
         let swept = if done { pushed } else { dropped % WIDTH };
         if done {
             self.point[pushed] = self.so_far;
@@ -278,6 +274,16 @@ impl<T: Real> Search<T> {
         self.tableau
             .sweep(swept, if done { T::ONE } else { -T::ONE });
         if done { self.choose(worst) } else { pushed }
+    }
+
+    /// Where nothing gives way to a joint any more, the cut in the end keeps its bound: the next
+    /// one is pushed.
+    #[cold]
+    #[inline(never)]
+    fn pass_over(&mut self, joint: usize) -> usize {
+        self.choice[joint % WIDTH] = T::ZERO;
+        let worst = self.go(joint, T::ZERO);
+        self.choose(worst)
     }
 
     /// Moves the multiplier of the pushed joint by `step`, or until the first joint leaves its

@@ -203,7 +203,9 @@ fn largest_inertias<T: Real>(model: &ArmModel<T>) -> [f64; DOF] {
     largest
 }
 
-/// Moves one joint to where the inertia of `joint` is largest.
+/// Moves one joint to where the inertia of `joint` is largest. Behind a call: it is in the flash
+/// once.
+#[inline(never)]
 fn walk<T: Real>(
     model: &ArmModel<T>,
     joint: usize,
@@ -228,6 +230,8 @@ fn walk<T: Real>(
     *largest = most.max(*largest);
 }
 
+/// Behind a call: it is in the flash once.
+#[inline(never)]
 fn inertia<T: Real>(model: &ArmModel<T>, joint: usize, posture: &[f64; DOF]) -> f64 {
     let mut mass_matrix = zeros();
     set_mass_matrix(model, posture, &mut mass_matrix);

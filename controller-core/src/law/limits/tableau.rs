@@ -39,10 +39,11 @@ impl<T: Real> Tableau<T> {
         });
     }
 
-    /// The lower half less `held` x x^T. Behind a call: in a loop around it its numbers would not
-    /// fit into registers.
+    /// The lower half less `held` x x^T, x = L^-T y. Behind a call: in a loop around it its
+    /// numbers would not fit into registers.
     #[inline(never)]
-    pub fn stiffen(&mut self, x: &JointVector<T>, held: T) {
+    pub fn stiffen(&mut self, cholesky: &Cholesky<T>, y: &JointVector<T>, held: T) {
+        let x = cholesky.solve_upper(y);
         for i in 0..DOF {
             let scaled = x[i] * held;
             for j in 0..=i {

@@ -197,13 +197,14 @@ impl<T: Real> Wish<T> {
         let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
         let bias = rows.bias.get(level.rows()).unwrap_or(&[]);
         let (mut wanted, mut speed) = ([T::ZERO; 3], [T::ZERO; 3]);
+        let known = self.whitened + self.residual;
         let given = commanded.iter().zip(bias).zip(along);
         for (k, (direction, ((commanded, bias), along))) in
             directions.iter().zip(given).enumerate().take(3)
         {
             wanted[k] = *commanded - *bias;
             if number > 0 {
-                wanted[k] -= direction.row.dot(&self.whitened) + direction.row.dot(&self.residual);
+                wanted[k] -= direction.row.dot(&known);
             }
             direction.add_part(*along, &mut speed);
         }

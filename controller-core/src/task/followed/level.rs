@@ -149,8 +149,11 @@ impl<T: Real> FollowedLevel<T> {
     pub(super) fn follow(&mut self, kind: Kind, velocity: &Vector3<T>, acceleration: &Vector3<T>) {
         self.decay.end();
         self.phase = Phase::Following(kind);
-        self.now.velocity = *velocity;
-        self.now.acceleration = *acceleration;
+        // Number by number: vectors from elsewhere are moved by a call.
+        for axis in 0..3 {
+            self.now.velocity[axis] = velocity[axis];
+            self.now.acceleration[axis] = acceleration[axis];
+        }
     }
 
     /// Leaves the motion until now for the wanted one where that jumps along an axis that the
