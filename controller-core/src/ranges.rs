@@ -137,9 +137,6 @@ pub const BEND_CURVATURE_MIN: f64 = 0.01;
 /// level is released.
 pub const BEND_ROOM_MIN: f64 = 0.1;
 
-/// Rounds of the power method for the motion that bends it.
-pub const BEND_ROUNDS: u8 = 4;
-
 /// So far to a side of the straight posture q_d decides \[rad\], or the room in the range.
 pub const BEND_TOWARDS: f64 = 0.0175;
 

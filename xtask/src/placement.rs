@@ -29,6 +29,10 @@ const REQUIRED: [(&[&str], &Memory); 6] = [
 /// ITCM, so that every direct call out of it has one.
 const THUNK: &str = "LongThunk_";
 
+/// Called from ITCM and in flash all the same: what bends a straight arm. It runs while a level is
+/// released and off its target, and would take a twentieth of ITCM.
+const IN_FLASH: &str = "way_out";
+
 /// Builds it and checks the addresses.
 pub fn run() -> Outcome {
     find(&[LLVM])?;
@@ -117,7 +121,8 @@ fn misplaced(symbols: &[(u64, String)]) -> Vec<String> {
         .iter()
         .filter(|(address, _)| range.contains(address))
     {
-        if let Some((_, callee)) = name.split_once(THUNK) {
+        let callee = name.split_once(THUNK).map(|(_, callee)| callee);
+        if let Some(callee) = callee.filter(|callee| !callee.contains(IN_FLASH)) {
             lines.push(format!("{callee}: not in {memory}, called from it"));
         }
     }

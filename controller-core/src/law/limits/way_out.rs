@@ -21,8 +21,8 @@ use crate::arm::kinematics::Kinematics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointMatrix, JointVector, Vector3, zeros};
 use crate::ranges::{
-    BEND_ACCELERATION, BEND_CURVATURE_MIN, BEND_ERROR, BEND_PREFERRED, BEND_ROOM_MIN, BEND_ROUNDS,
-    BEND_TOWARDS, MAX_ROWS, RELEASE_DAMPING,
+    BEND_ACCELERATION, BEND_CURVATURE_MIN, BEND_ERROR, BEND_PREFERRED, BEND_ROOM_MIN, BEND_TOWARDS,
+    MAX_ROWS, RELEASE_DAMPING,
 };
 use crate::real::Real;
 use crate::task::level::{Level, LevelPoint, Levels};
@@ -33,9 +33,13 @@ use crate::task::rows::TaskRows;
 pub struct WayOut<T: Real> {
     /// Acceleration \[rad/s2\] that the null space is asked for on top of the rest.
     pub acceleration: JointVector<T>,
-    /// Levels that are off their target along a direction that they have lost, and that no
-    /// motion of the null space brings nearer: they have no way out.
+    /// The first level that is off its target along a direction that it has lost, if no motion
+    /// of the null space brings it nearer: it has no way out.
     pub stuck: IndexSet,
+    /// x, of which the null space has n: every cycle brings it nearer to the best motion.
+    motion: JointVector<T>,
+    /// Whether it is that of a level that is being bent for.
+    is_begun: bool,
 }
 
 /// Where an arm is with a level released.
@@ -64,16 +68,27 @@ impl<T: Real> WayOut<T> {
         Self {
             acceleration: zeros(),
             stuck: IndexSet::NONE,
+            motion: zeros(),
+            is_begun: false,
         }
     }
 
     /// Nothing where no level is released.
     #[inline]
     pub(crate) fn update(&mut self, arm: &Straight<'_, T>) {
-        (self.acceleration, self.stuck) = (zeros(), IndexSet::NONE);
-        if !arm.spectrum.released.any() {
+        self.stuck = IndexSet::NONE;
+        if arm.spectrum.released.any() && self.bend_for_first(arm) {
             return;
         }
+        if self.is_begun {
+            (self.acceleration, self.is_begun) = (zeros(), false);
+        }
+    }
+
+    /// Of the levels that are off their target the first, so that a cycle bends for one. Whether
+    /// there is one.
+    #[inline(never)]
+    fn bend_for_first(&mut self, arm: &Straight<'_, T>) -> bool {
         for (number, level) in arm.levels.as_slice().iter().enumerate() {
             if arm.spectrum.released.contains(number) {
                 let lost = lost_error(level, arm.rows, arm.spectrum);
@@ -82,9 +97,11 @@ impl<T: Real> WayOut<T> {
                 let share = (error / least - T::ONE).least(T::ONE);
                 if share > T::ZERO {
                     self.bend(arm, number, level, &(lost / error), share);
+                    return true;
                 }
             }
         }
+        false
     }
 
     /// Of one level, `towards` being the unit vector e.
@@ -98,8 +115,9 @@ impl<T: Real> WayOut<T> {
         share: T,
     ) {
         let (slope, curvature) = second_order(level, arm.kinematics, towards);
-        let motion = nearest(arm, &curvature);
-        let nearer = motion.dot(&(curvature * motion)) * level.length;
+        let (motion, turned) = self.nearest(arm, &curvature);
+        let nearer = motion.dot(&turned) * level.length;
+        self.acceleration = zeros();
         let mut way = None;
         if nearer > T::from_f64(BEND_CURVATURE_MIN) {
             let bent = slope.dot(&motion) * level.length / nearer;
@@ -114,8 +132,37 @@ impl<T: Real> WayOut<T> {
             let others = others / whitened.dot(&whitened);
             let opposing = (-others * T::ONE.with_sign_of(side)).larger(T::ZERO);
             let asked = side * (T::from_f64(BEND_ACCELERATION) + opposing);
-            self.acceleration += motion * (asked * share);
+            self.acceleration = motion * (asked * share);
         }
+    }
+
+    /// The null-space motion n that gains most on the target for its size, and H n: the first
+    /// eigenvector of H in the null space, by one round of the power method in every cycle. As
+    /// fast as its fastest joint, which goes up: that is the one that bends.
+    #[inline(always)]
+    fn nearest(
+        &mut self,
+        arm: &Straight<'_, T>,
+        curvature: &JointMatrix<T>,
+    ) -> (JointVector<T>, JointVector<T>) {
+        if !self.is_begun {
+            // Not along a direction of any arm.
+            let begin = [0.9, 1.1, -0.7, 1.3, 0.8, -1.2, 0.6];
+            (self.motion, self.is_begun) = (begin.map(T::from_f64).into(), true);
+        }
+        let motion = in_null_space(arm, &self.motion);
+        let mut fastest = T::from_f64(1e-30);
+        for &speed in motion.iter() {
+            if speed.magnitude() > fastest.magnitude() {
+                fastest = speed;
+            }
+        }
+        let motion = motion / fastest;
+        let turned = curvature * motion;
+        // Of eigenvalues of both signs the largest wins: none is below minus the norm.
+        let shift = curvature.dot(curvature).square_root();
+        self.motion = turned + self.motion * (shift / fastest);
+        (motion, turned)
     }
 }
 
@@ -188,68 +235,25 @@ fn second_order<T: Real>(
     (slope, curvature)
 }
 
-/// What of joint motions the null space has, with all joints alike: the directions of the levels
+/// What of a joint motion the null space has, with all joints alike: the directions of the levels
 /// as joint-space rows, made perpendicular to each other, and how much each is kept.
-struct NullMotions<T: Real> {
-    rows: [(JointVector<T>, T); MAX_ROWS],
-}
-
-impl<T: Real> NullMotions<T> {
-    #[inline(always)]
-    fn new(arm: &Straight<'_, T>) -> Self {
-        let mut of = Self {
-            rows: [(zeros(), T::ZERO); MAX_ROWS],
-        };
-        for (place, direction) in arm.spectrum.directions().iter().enumerate() {
-            let mut row = arm.dynamics.cholesky.lower_times(&direction.along);
-            for (other, kept) in of.rows.iter().take(place) {
-                row -= other * (other.dot(&row) * *kept);
-            }
-            row /= row.dot(&row).square_root().larger(T::from_f64(1e-12));
-            let kept = direction.keep * direction.mobility.larger(T::ZERO);
-            if let Some(place) = of.rows.get_mut(place) {
-                *place = (row, kept);
-            }
-        }
-        of
-    }
-
-    #[inline(never)]
-    fn of(&self, motion: &JointVector<T>) -> JointVector<T> {
-        let mut left = *motion;
-        for (row, kept) in &self.rows {
-            left -= row * (row.dot(motion) * *kept);
-        }
-        left
-    }
-}
-
-/// The null-space motion that gains most on the target for its size: the first eigenvector of H
-/// in the null space, by the power method. As fast as its fastest joint, which goes up: that is the
-/// one that bends.
 #[inline(always)]
-fn nearest<T: Real>(arm: &Straight<'_, T>, curvature: &JointMatrix<T>) -> JointVector<T> {
-    let null = NullMotions::new(arm);
-    let least = T::from_f64(1e-30);
-    // Not along a direction of any arm.
-    let mut x = null.of(&JointVector::from(
-        [0.9, 1.1, -0.7, 1.3, 0.8, -1.2, 0.6].map(T::from_f64),
-    ));
-    for _ in 0..BEND_ROUNDS {
-        let once = null.of(&(curvature * x));
-        let twice = null.of(&(curvature * once));
-        // Of eigenvalues of both signs the positive one wins.
-        let shift = (twice.dot(&twice) / once.dot(&once).larger(least)).square_root();
-        x = twice + once * shift;
-        x /= x.dot(&x).square_root().larger(least);
-    }
-    let mut fastest = least;
-    for i in 0..DOF {
-        if x[i].magnitude() > fastest.magnitude() {
-            fastest = x[i];
+fn in_null_space<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>) -> JointVector<T> {
+    let mut rows: [(JointVector<T>, T); MAX_ROWS] = [(zeros(), T::ZERO); MAX_ROWS];
+    let mut left = *motion;
+    for (place, direction) in arm.spectrum.directions().iter().enumerate() {
+        let mut row: JointVector<T> = arm.dynamics.cholesky.lower_times(&direction.along);
+        for (other, kept) in rows.iter().take(place) {
+            row -= other * (other.dot(&row) * *kept);
+        }
+        row /= row.dot(&row).square_root().larger(T::from_f64(1e-12));
+        let kept = direction.keep * direction.mobility.larger(T::ZERO);
+        left -= row * (row.dot(motion) * kept);
+        if let Some(place) = rows.get_mut(place) {
+            *place = (row, kept);
         }
     }
-    x / fastest
+    left
 }
 
 /// To which side of a null-space motion the arm is to bend and how much, -1 to 1, if it is `bent`
