@@ -15,6 +15,9 @@ use controller_core::arm::{
     ArmParameters, Friction, Link, LinkParameters, LinkPoint, NamedPoint, Pose,
 };
 
+use crate::lwr_iv::LWR_IV_REALISTIC;
+use crate::realistic::Realistic;
+
 /// No limit of the arm that is published: a net, above what motion and contact need \[Nm/s\].
 const TORQUE_RATE: f64 = 10e3;
 
@@ -191,4 +194,11 @@ pub const IIWA_14: ArmParameters = ArmParameters {
     points: POINTS,
     limits: None,
     damping_postures: &[],
+};
+
+/// A true iiwa 14: errors of its bodies are drawn. Its friction under torque control is not
+/// published; that of the LWR IV+, its predecessor, stands in, which is chosen as well.
+pub const IIWA_14_REALISTIC: Realistic = Realistic {
+    friction: LWR_IV_REALISTIC.friction,
+    ..Realistic::of_table(&IIWA_14)
 };

@@ -21,6 +21,8 @@ use controller_core::arm::{
     ArmParameters, Friction, JointLimits, Link, LinkParameters, LinkPoint, NamedPoint, Pose,
 };
 
+use crate::realistic::Realistic;
+
 /// The flange of the LWR IV+: 0.078 m beyond the wrist along z7.
 pub const LWR_IV_FLANGE: LinkPoint = LinkPoint {
     link: Link::L7,
@@ -338,3 +340,6 @@ pub const LWR_IV: ArmParameters = ArmParameters {
     limits: Some(LIMITS),
     damping_postures: &DAMPING_POSTURES,
 };
+
+/// A true LWR IV+: errors of its bodies are drawn, friction is the one chosen above.
+pub const LWR_IV_REALISTIC: Realistic = Realistic::of_table(&LWR_IV);

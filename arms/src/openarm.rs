@@ -1,7 +1,9 @@
-//! What both versions of OpenArm share: the points that have a name, and how one side becomes
-//! the other.
+//! What both versions of OpenArm share: the points that have a name, their motors, and how one
+//! side becomes the other.
 
 use controller_core::arm::{ArmParameters, Link, LinkParameters, LinkPoint, NamedPoint, Pose};
+
+use crate::realistic::MotorRanges;
 
 /// Elbow and wrist are origins of DH frames.
 pub(crate) const fn points(flange: &Pose) -> [NamedPoint; 3] {
@@ -17,6 +19,20 @@ pub(crate) const fn points(flange: &Pose) -> [NamedPoint; 3] {
         named("flange", Link::L7, flange.shift),
     ]
 }
+
+/// PMAX, VMAX, TMAX of Damiao's motors, registers 21 to 23 as they come from the factory:
+/// enactic/openarm_can, table of motor types. TMAX is a scale, not a limit.
+const fn motor(position: f64, speed: f64, torque: f64) -> MotorRanges {
+    MotorRanges {
+        position,
+        speed,
+        torque,
+    }
+}
+pub(crate) const DM3507: MotorRanges = motor(12.5, 50.0, 5.0);
+pub(crate) const DM4310: MotorRanges = motor(12.5, 30.0, 10.0);
+pub(crate) const DM4340: MotorRanges = motor(12.5, 10.0, 28.0);
+pub(crate) const DM8009: MotorRanges = motor(12.5, 45.0, 54.0);
 
 /// Signs of the axes of a frame that is mirrored in y, and in z.
 const IN_Y: [f64; 3] = [1.0, -1.0, 1.0];

@@ -16,7 +16,8 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use controller_core::arm::{ArmParameters, Friction, LinkParameters, Pose};
 
-use crate::openarm;
+use crate::openarm::{self, DM4310, DM4340, DM8009};
+use crate::realistic::{Interface, Realistic};
 
 /// No limit of the arm that is published: a net, above what motion and contact need \[Nm/s\].
 const TORQUE_RATE: f64 = 10e3;
@@ -234,3 +235,11 @@ pub const OPENARM_V10_LEFT: ArmParameters = openarm::mirrored(
     &openarm::points(&openarm::pose(&FLANGE_RIGHT)),
     &[(4, [1.0, -1.0, -1.0])],
 );
+
+/// A true arm: errors of its bodies are drawn, friction is the maker's compensation law, and
+/// everything passes through frames of the motors' bus, which takes a cycle.
+pub const OPENARM_V10_REALISTIC: Realistic = Realistic {
+    interface: Interface::Frames([DM8009, DM8009, DM4340, DM4340, DM4310, DM4310, DM4310]),
+    dead_cycles: 1,
+    ..Realistic::of_table(&OPENARM_V10_RIGHT)
+};

@@ -14,7 +14,9 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use controller_core::arm::{ArmParameters, Friction, LinkParameters, Pose};
 
-use crate::openarm;
+use crate::openarm::{self, DM3507, DM4310, DM4340, DM8009};
+use crate::openarm_v10::OPENARM_V10_REALISTIC;
+use crate::realistic::{Interface, Realistic};
 
 /// No limit of the arm that is published: a net, above what motion and contact need \[Nm/s\].
 const TORQUE_RATE: f64 = 10e3;
@@ -257,3 +259,17 @@ pub const OPENARM_V20_RIGHT: ArmParameters = openarm::mirrored(
     &openarm::points(&openarm::pose(&FLANGE_LEFT)),
     &[(3, [1.0; 3]), (4, [1.0; 3])],
 );
+
+/// A true arm: errors of its bodies are drawn, and everything passes through frames of the motors'
+/// bus, which takes a cycle. Motors 1 to 6 are those of version 1.0 and have the friction of the
+/// maker's compensation law for it, which is far from that of the simulator in the table; motor 7
+/// is another one and keeps the table's.
+pub const OPENARM_V20_REALISTIC: Realistic = {
+    let mut friction = OPENARM_V10_REALISTIC.friction;
+    friction[6] = OPENARM_V20_LEFT.links[6].friction;
+    Realistic {
+        friction,
+        interface: Interface::Frames([DM8009, DM8009, DM4340, DM4340, DM4310, DM4310, DM3507]),
+        ..OPENARM_V10_REALISTIC
+    }
+};

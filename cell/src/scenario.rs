@@ -52,7 +52,29 @@ pub const BUILT_IN: &[(&str, &str)] = &[
     ("case-1", include_str!("../scenarios/case-1.toml")),
     ("case-2", include_str!("../scenarios/case-2.toml")),
     ("hand", include_str!("../scenarios/hand.toml")),
+    (
+        "two-level-iiwa-14",
+        include_str!("../scenarios/two-level-iiwa-14.toml"),
+    ),
+    (
+        "two-level-fr3",
+        include_str!("../scenarios/two-level-fr3.toml"),
+    ),
+    (
+        "two-level-openarm",
+        include_str!("../scenarios/two-level-openarm.toml"),
+    ),
 ];
+
+/// Their names, in a line.
+#[must_use]
+pub fn built_in_names() -> String {
+    names().join(", ")
+}
+
+fn names() -> Vec<&'static str> {
+    BUILT_IN.iter().map(|(name, _)| *name).collect()
+}
 
 /// An experiment, as in its file.
 #[derive(Clone, Debug, Deserialize)]
@@ -181,8 +203,7 @@ impl Scenario {
             return Self::parse(text).map_err(|error| error.within(name));
         }
         if !is_path(name) {
-            let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
-            return Err(Invalid::name("scenario", name, &known));
+            return Err(Invalid::name("scenario", name, &names()));
         }
         let path = Path::new(name);
         let text = file::text(path).map_err(|error| {
@@ -201,11 +222,10 @@ impl Scenario {
     /// # Errors
     /// Unknown name.
     pub fn built_in_text(name: &str) -> Result<&'static str, Invalid> {
-        let known: Vec<_> = BUILT_IN.iter().map(|(known, _)| *known).collect();
         let found = BUILT_IN.iter().find(|(known, _)| *known == name);
         found
             .map(|(_, text)| *text)
-            .ok_or_else(|| Invalid::name("scenario", name, &known))
+            .ok_or_else(|| Invalid::name("scenario", name, &names()))
     }
 
     /// Reads and checks a scenario; an arm file is looked for in the working directory.

@@ -16,7 +16,7 @@ use cell::arguments::values::{address, number, peer, processor, whole};
 use cell::invalid::Invalid;
 use cell::names::{Named, NullStiffness};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, WAIT_S};
-use cell::scenario::{Scenario, ScenarioSource};
+use cell::scenario::{Scenario, ScenarioSource, built_in_names};
 use cell::terminal::{print, tell};
 use clap::{Args, Parser, Subcommand};
 use controller_core::joint::JointVector;
@@ -70,8 +70,8 @@ enum Command {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 struct RunOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file, which says arm, mount and tool
-    #[arg(long, default_value = "two-level")]
+    #[arg(long, default_value = "two-level",
+        help = format!("Built-in scenario ({}), or a TOML file, which says arm, mount and tool", built_in_names()))]
     scenario: String,
     /// Address and port to which the robot sends
     #[arg(long, default_value = "127.0.0.1:49938", value_parser = address, value_name = "ADDR:PORT")]

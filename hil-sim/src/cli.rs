@@ -17,7 +17,7 @@ use crate::explain::explain_in;
 use cell::arguments::usage::{self, USAGE};
 use cell::file;
 use cell::invalid::Invalid;
-use cell::scenario::Scenario;
+use cell::scenario::{Scenario, built_in_names};
 use cell::terminal::{print, tell};
 
 pub use model::ModelOptions;
@@ -64,7 +64,7 @@ enum Command {
     Model(ModelOptions),
     /// Print a built-in scenario as commented TOML
     Scenario {
-        /// two-level, case-1, case-2, hand
+        #[arg(help = built_in_names())]
         name: String,
     },
     /// Lay one control cycle open: JSON state in, every quantity of the law out

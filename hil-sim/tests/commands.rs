@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use cell::scenario::BUILT_IN;
 use serde_json::Value;
 
 fn hil_sim(folder: &Path, arguments: &str) -> Output {
@@ -113,7 +114,7 @@ fn a_closed_standard_error_does_not_end_a_run() {
 #[test]
 fn printed_scenarios_run_to_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    for name in ["two-level", "case-1", "case-2", "hand"] {
+    for (name, _) in BUILT_IN {
         let printed = hil_sim(folder.path(), &format!("scenario {name}"));
         assert_eq!(printed.status.code(), Some(0));
         fs::write(folder.path().join("printed.toml"), printed.stdout).expect("a file");

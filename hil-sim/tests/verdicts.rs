@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use cell::scenario::BUILT_IN;
 use serde_json::Value;
 
 /// What a run said: exit code, standard output, summary.
@@ -272,8 +273,11 @@ fn a_reference_that_steps_the_torque_is_in_table_and_report() {
 
 #[test]
 fn no_built_in_scenario_steps_the_torque() {
-    for name in ["two-level", "case-1", "case-2", "hand"] {
-        for options in ["", "--measurement fri"] {
+    for (name, _) in BUILT_IN {
+        // FRI has positions only. Speeds made of the 16 bits of OpenArm's motors step by 0.1 rad/s.
+        let by_positions = *name != "two-level-openarm";
+        let options = ["", "--measurement fri"];
+        for options in options.into_iter().take(if by_positions { 2 } else { 1 }) {
             let folder = tempfile::tempdir().expect("a temporary folder");
             let output = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
                 .args(["run", name, "--out", "o"])

@@ -6,8 +6,7 @@ use controller_core::Controller;
 
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
-use crate::plant::PlantOptions;
-use crate::plant::friction::FrictionLaw;
+use crate::plant::{PlantOptions, want_of_data};
 use cell::names::PlantKind;
 use cell::scenario::{PostureSpec, Scenario};
 use cell::terminal::tell;
@@ -43,14 +42,12 @@ fn warn_of_damping(experiment: &Experiment, controller: &Controller<f64>) {
     }
 }
 
-/// A realistic plant is less so where the table of its arm has no friction.
+/// A realistic plant is less so where nobody knows how its arm departs from the table.
 pub fn say_what_is_unknown(scenario: &Scenario, plant: PlantKind) {
-    let arm = scenario.arm().parameters;
-    if plant == PlantKind::Realistic && FrictionLaw::of(&arm).is_none() {
-        tell(format_args!(
-            "note: friction of {} is not known: the plant has none",
-            arm.name
-        ));
+    if plant == PlantKind::Realistic
+        && let Some(note) = want_of_data(&scenario.arm().parameters)
+    {
+        tell(format_args!("note: {note}"));
     }
 }
 

@@ -20,7 +20,7 @@ use cell::arguments::values::{number, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED};
-use cell::scenario::Scenario;
+use cell::scenario::{Scenario, built_in_names};
 use cell::terminal::{print, show};
 
 /// Size of a trace \[GB\].
@@ -31,7 +31,7 @@ const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct RunOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file, which says arm, mount and tool
+    #[arg(help = format!("Built-in scenario ({}), or a TOML file, which says arm, mount and tool", built_in_names()))]
     scenario: String,
     /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
@@ -48,10 +48,10 @@ pub struct RunOptions {
     /// How the controller sees the arm: direct; fri: through the datagrams of the robot link, held for a second before time 0, speeds estimated; like-fri: the same without datagrams
     #[arg(long, default_value = "direct")]
     measurement: String,
-    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
+    #[arg(long, value_parser = whole(DEAD_CYCLES),
         help = format!("Cycles between the torque and its effect, {DEAD_CYCLES}; above 0 the \
-            null-space damping is the scenario's inertia-shaped one"))]
-    dead_cycles: u8,
+            null-space damping is the scenario's inertia-shaped one [default: the plant's own]"))]
+    dead_cycles: Option<u8>,
     /// True stiction instead of smooth friction (realistic plant): on, off
     #[arg(long, default_value = "off")]
     stiction: String,
@@ -116,7 +116,9 @@ impl RunOptions {
         option("controller", &self.controller, "hierarchical");
         option("null-stiffness", &self.null_stiffness, "normal");
         option("measurement", &self.measurement, "direct");
-        option("dead-cycles", &self.dead_cycles.to_string(), "0");
+        if let Some(cycles) = self.dead_cycles {
+            option("dead-cycles", &cycles.to_string(), "");
+        }
         option("stiction", &self.stiction, "off");
         option("elasticity", &self.elasticity, "off");
         option("seed", &self.seed.to_string(), "1");
@@ -151,6 +153,7 @@ impl RunOptions {
             );
             return Err(Invalid::new("controller", &self.controller, allowed));
         }
+        let own = PlantOptions::of(plant, &scenario.arm().parameters);
         Ok(Experiment {
             scenario,
             plant,
@@ -162,7 +165,7 @@ impl RunOptions {
             options: PlantOptions {
                 stiction: option("--stiction", &self.stiction)?,
                 elasticity: option("--elasticity", &self.elasticity)?,
-                dead_cycles: self.dead_cycles.into(),
+                dead_cycles: self.dead_cycles.map_or(own.dead_cycles, usize::from),
                 substeps_factor: 0,
             },
         })

@@ -21,7 +21,7 @@ use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, PlantKind};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED, WAIT_S};
 use cell::realtime::Realtime;
-use cell::scenario::Scenario;
+use cell::scenario::{Scenario, built_in_names};
 use cell::terminal::{print, tell};
 use record::run::Sample;
 
@@ -55,8 +55,8 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
-    /// Built-in scenario (two-level, case-1, case-2, hand), or a TOML file: arm, start, contacts, what is judged
-    #[arg(long, default_value = "two-level")]
+    #[arg(long, default_value = "two-level",
+        help = format!("Built-in scenario ({}), or a TOML file: arm, start, contacts, what is judged", built_in_names()))]
     scenario: String,
     /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
@@ -85,9 +85,10 @@ pub struct ServeOptions {
     #[arg(long, value_parser = number(DURATION_S),
         help = format!("Length in s, {DURATION_S} [default: the scenario's]"))]
     duration: Option<f64>,
-    #[arg(long, default_value_t = 0, value_parser = whole(DEAD_CYCLES),
-        help = format!("Cycles between the added torque and its effect, {DEAD_CYCLES}"))]
-    dead_cycles: u8,
+    #[arg(long, value_parser = whole(DEAD_CYCLES),
+        help = format!("Cycles between the added torque and its effect, {DEAD_CYCLES} \
+            [default: the plant's own]"))]
+    dead_cycles: Option<u8>,
     /// Virtual time: as fast as both sides can, the same bytes every time
     #[arg(long)]
     lockstep: bool,
@@ -316,14 +317,16 @@ impl ServeOptions {
                 Some([window.from_s, window.to_s])
             }
         };
+        let plant = PlantKind::from_name(&self.plant)?;
+        let own = PlantOptions::of(plant, &scenario.arm().parameters);
         Ok(RobotSetup {
             scenario,
-            plant: PlantKind::from_name(&self.plant)?,
+            plant,
             contacts: switch("--contacts", &self.contacts)?,
             seed: self.seed,
             plant_options: PlantOptions {
-                dead_cycles: self.dead_cycles.into(),
-                ..PlantOptions::default()
+                dead_cycles: self.dead_cycles.map_or(own.dead_cycles, usize::from),
+                ..own
             },
             options: RobotOptions {
                 krl: Krl::from_name(&self.krl)?,

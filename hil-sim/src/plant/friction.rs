@@ -3,7 +3,8 @@
 //!
 //! F(dq) = F_c tanh(dq / v) + F_v dq,
 //!
-//! which opposes the motion: the joint feels -F. The numbers are those of the arm's table.
+//! which opposes the motion: the joint feels -F. The numbers are those of the true arm
+//! ([`super::mismatch::true_arm`]).
 //! Under a torque below F_c a joint creeps instead of sticking; [`super::stiction`] is the
 //! law with which it sticks.
 
@@ -50,12 +51,6 @@ impl FrictionLaw {
             viscous: each(|friction| friction.viscous),
             smoothing: each(|friction| friction.smoothing),
         }
-    }
-
-    /// Whether no joint has any: a table says so where friction is not known.
-    #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.coulomb.amax() == 0.0 && self.viscous.amax() == 0.0
     }
 
     /// Friction at the joint speeds `dq` \[rad/s\].

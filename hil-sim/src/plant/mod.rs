@@ -7,8 +7,9 @@
 //!
 //! Two kinds. `ideal` is the exact model, integrated to rounding; it shows what
 //! the control law does. `realistic` adds what a real arm adds: friction, wrong
-//! masses, torque noise, encoders, a differentiated velocity. On request
-//! ([`PlantOptions`]) also joints that stick or are elastic, and dead time.
+//! masses, torque noise, encoders, a differentiated velocity or the frames of a
+//! motor bus, each arm's own ([`realistic`]). On request ([`PlantOptions`]) also
+//! joints that stick or are elastic, and dead time.
 //!
 //! Everything is `f64` and uses no elementary function of the platform, so a
 //! seed gives the same bytes on every machine.
@@ -17,6 +18,7 @@ mod aba;
 pub mod actuators;
 mod drive;
 pub mod elastic;
+pub mod frames;
 pub mod friction;
 pub mod impedance;
 mod integrate;
@@ -27,6 +29,7 @@ mod options;
 pub mod sensor;
 pub mod stiction;
 
+use arms::realistic::Realistic;
 use cell::names::PlantKind;
 use controller_core::arm::ArmParameters;
 use controller_core::joint::{JointState, JointVector};
@@ -37,7 +40,7 @@ use integrate::Span;
 
 pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
-pub use mismatch::mismatched;
+pub use mismatch::{mismatched, realistic, true_arm, want_of_data};
 pub use model::PlantModel;
 pub use noise::Rng;
 pub(crate) use options::DeadTime;
@@ -100,6 +103,25 @@ impl Plant {
         seed: u64,
         options: PlantOptions,
     ) -> Self {
+        let realistic = realistic(parameters);
+        Self::departing(kind, parameters, &realistic, q0, cycle_s, seed, options)
+    }
+
+    /// As [`Plant::with_options`], the realistic plant with departures of the caller's choice. The
+    /// dead time is that of `options`.
+    ///
+    /// # Panics
+    /// As [`Plant::with_options`].
+    #[must_use]
+    pub fn departing(
+        kind: PlantKind,
+        parameters: &ArmParameters,
+        realistic: &Realistic,
+        q0: JointVector<f64>,
+        cycle_s: f64,
+        seed: u64,
+        options: PlantOptions,
+    ) -> Self {
         let nominal = PlantModel::new(parameters);
         let dead_time = DeadTime::new(options.dead_cycles, nominal.gravity_torque(&q0));
         let (model, drive, imperfections) = match kind {
@@ -109,7 +131,8 @@ impl Plant {
             }
             PlantKind::Realistic => {
                 let mut rng = Rng::new(seed, noise::stream::MISMATCH);
-                let mut moving = mismatched(parameters, &mut rng);
+                let truth = true_arm(parameters, realistic, &mut rng);
+                let mut moving = truth;
                 if options.elasticity {
                     // Rotors are on the other side of the springs.
                     for link in &mut moving.links {
@@ -117,9 +140,9 @@ impl Plant {
                     }
                 }
                 let model = PlantModel::new(&moving);
-                let drive = Drive::realistic(parameters, &model, &q0, &options);
+                let drive = Drive::realistic(&truth, &model, &q0, &options);
                 let imperfections = Imperfections {
-                    sensor: Sensor::new(&q0, cycle_s),
+                    sensor: Sensor::new(&realistic.interface, &q0, cycle_s),
                     torque_noise: Rng::new(seed, noise::stream::TORQUE),
                     torque_deviation: Actuators::of(parameters).torque_noise,
                 };
@@ -160,12 +183,17 @@ impl Plant {
     }
 
     /// What the arm reports at this cycle instant: the true state (ideal), or
-    /// encoder positions and their filtered difference (realistic). Call once
+    /// encoder positions and their filtered difference, or what its motors
+    /// report (realistic). Call once
     /// per cycle, before [`Plant::advance`]: the velocity filter counts calls.
     pub fn measure(&mut self) -> JointState<f64> {
         match &mut self.imperfections {
             None => self.state,
-            Some(imperfections) => imperfections.sensor.measure(&self.state.q),
+            Some(imperfections) => {
+                let elastic = self.drive.elastic.as_ref();
+                let motor = elastic.map_or(&self.state, |elastic| &elastic.motor);
+                imperfections.sensor.measure(&self.state, motor)
+            }
         }
     }
 
@@ -200,6 +228,7 @@ impl Plant {
     ) {
         let mut torque = self.dead_time.pass(torque);
         if let Some(imperfections) = &mut self.imperfections {
+            torque = imperfections.sensor.commanded(&torque);
             let deviations = imperfections.torque_deviation.iter();
             for (torque, deviation) in torque.iter_mut().zip(deviations) {
                 *torque += deviation * imperfections.torque_noise.gaussian();

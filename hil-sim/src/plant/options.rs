@@ -1,14 +1,18 @@
 //! What the plant can imitate beyond the reference behaviour.
 
+use cell::names::PlantKind;
+use controller_core::arm::ArmParameters;
 use controller_core::cycle::delay::Delay;
 use controller_core::joint::JointVector;
 use controller_core::ranges;
+
+use super::mismatch::realistic;
 
 /// Largest dead time, in cycles: that of the controller.
 const DEAD_CYCLES_MAX: usize = ranges::DEAD_CYCLES_MAX as usize;
 
 /// Effects that the reference plant leaves out. The default is the reference
-/// plant, to the last bit.
+/// plant, to the last bit; [`PlantOptions::of`] has the dead time of an arm's own.
 ///
 /// Stiction and elasticity are effects of a real drive: the ideal plant does
 /// not read them.
@@ -28,6 +32,20 @@ pub struct PlantOptions {
 }
 
 impl PlantOptions {
+    /// What the plant of this arm has where nothing else is asked for: on the realistic one the dead
+    /// time that is the arm's own.
+    #[must_use]
+    pub fn of(kind: PlantKind, arm: &ArmParameters) -> Self {
+        let dead_cycles = match kind {
+            PlantKind::Ideal => 0,
+            PlantKind::Realistic => realistic(arm).dead_cycles.into(),
+        };
+        Self {
+            dead_cycles,
+            ..Self::default()
+        }
+    }
+
     /// `reference` integration steps, times the factor.
     pub(super) fn substeps(&self, reference: u32) -> u32 {
         let factor = u32::try_from(self.substeps_factor.max(1)).unwrap_or(u32::MAX);

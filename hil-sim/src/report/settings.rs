@@ -4,7 +4,7 @@ use super::Run;
 use super::svg::escape;
 use super::tables::Table;
 use super::ticks::plain;
-use crate::plant::friction::FrictionLaw;
+use crate::plant::want_of_data;
 use cell::names::{Named, PlantKind};
 use cell::scenario::{AxisGain, AxisOf, LevelSpec, PostureSpec, ReferenceSpec};
 
@@ -52,8 +52,10 @@ pub fn settings(run: &Run<'_>) -> String {
         "Duration, cycle",
         &format!("{duration} s, {cycle} ms, {} cycles run", summary.cycles),
     );
-    if summary.plant == PlantKind::Realistic.name() && FrictionLaw::of(&arm.parameters).is_none() {
-        row("Friction", "none: that of this arm is not known");
+    if summary.plant == PlantKind::Realistic.name()
+        && let Some(note) = want_of_data(&arm.parameters)
+    {
+        row("Plant", &note);
     }
     let options = &run.choices.options;
     let measurement = run.choices.measurement.name();

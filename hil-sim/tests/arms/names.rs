@@ -3,12 +3,12 @@
 use cell::names::PlantKind;
 use hil_sim::summary::Verdict;
 
-use super::{ARMS, experiment, run};
+use super::{arms, experiment, run};
 
 #[test]
 fn a_stopped_run_names_the_joint_as_its_maker_does() {
     // A push of 400 N at the elbow: first joints, and no arm keeps still.
-    for (text, prefix) in ARMS.iter().zip(["joint", "A", "Actuator", "J"]) {
+    for (text, prefix) in arms().iter().zip(["joint", "A", "Actuator", "J"]) {
         let mut experiment = experiment(text, PlantKind::Ideal);
         for push in &mut experiment.scenario.pushes {
             push.force_n = push.force_n.map(|force| 40.0 * force);

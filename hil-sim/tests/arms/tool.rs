@@ -6,7 +6,7 @@ use controller_core::joint::{JointState, JointVector, Matrix3, Vector3};
 use hil_sim::plant::PlantModel;
 use hil_sim::summary::Verdict;
 
-use super::{ARMS, experiment, run};
+use super::{arms, experiment, run};
 
 /// A gripper off the axis, turned in the flange.
 const TOOL: &str = "
@@ -32,7 +32,7 @@ fn turn() -> Matrix3<f64> {
 /// The weight of the tool is J^T of a force at its centre of mass, wherever the arm is.
 #[test]
 fn the_plant_carries_what_the_file_says() {
-    for text in ARMS {
+    for text in arms() {
         let bare = Scenario::parse(text).expect("a valid scenario");
         let scenario = Scenario::parse(&equipped(text)).expect("a valid scenario");
         let [bare, arm] = [bare.arm(), scenario.arm()].map(|arm| arm.parameters);
@@ -69,7 +69,7 @@ fn the_plant_carries_what_the_file_says() {
 /// The tool's point follows the circle of the flange while the body is pushed.
 #[test]
 fn a_tool_is_tracked_as_a_flange_is() {
-    for text in ARMS {
+    for text in arms() {
         for plant in [PlantKind::Ideal, PlantKind::Realistic] {
             let experiment = experiment(&equipped(text), plant);
             let summary = run(&experiment);
@@ -90,7 +90,7 @@ fn a_tool_swings_about_its_own_axis() {
                  stiffness = 400.0\ndamping = 40.0\n[level.reference]\nkind = \"swing\"\n\
                  axis = [0, 0, 1]\naxis_of = \"own\"\nangle_deg = 10.0\nperiod_s = 4.0\n\
                  growth_s = 1.0\n\n[null_space]";
-    let text = equipped(ARMS[0]).replacen("[null_space]", level, 1);
+    let text = equipped(arms()[0]).replacen("[null_space]", level, 1);
     let mut experiment = experiment(&text, PlantKind::Ideal);
     experiment.contacts = false;
     let controller = experiment.controller().expect("a controller");
