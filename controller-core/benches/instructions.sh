@@ -17,7 +17,8 @@
 # - a cycle or a stage is more than 2 % above the committed figure,
 # - a cycle is above its limit below, whatever is committed,
 # - a cycle of the FR3, whose links have lengths a, is more than 4 % above that of the LWR,
-# - the counts of a cycle differ by 0.5 % or more between the states.
+# - the counts of a cycle differ by 0.5 % or more between the states of a path, by 3 % or more where a
+#   level is released: which one it is, and whether it is stuck, is within the path.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -25,7 +26,7 @@ cd "$(dirname "$0")/../.."
 limit() {
   case "$1" in
     idle) echo 14000 ;;
-    step) echo 20600 ;;
+    step) echo 23900 ;;
   esac
 }
 
@@ -69,7 +70,7 @@ awk '
   $2 == "fault" { faults++; next }
   {
     add($1 " " $2)
-    if ($2 ~ /^(idle|released|pivots)/) add($1 " step")
+    if ($2 ~ /^(idle|released|bent|pivots)/) add($1 " step")
   }
   function add(key) {
     if (!(key in min)) { order[++n] = key; min[key] = max[key] = $3 }
@@ -96,10 +97,11 @@ while read -r case stage max min count; do
   fi
   spread=$(awk "BEGIN { printf \"%.2f\", 100 * ($max - $min) / $min }")
   printf '%-30s %-15s %8d %8d %8s %7d\n' "$case" "$stage" "$max" "$min" "$spread" "$count"
-  if [[ "$stage" =~ ^(idle|released|pivots|resolver) ]]; then
-    if awk "BEGIN { exit !($spread >= 0.5) }"; then
-      fails "$case $stage: spread $spread %, must be below 0.5 %: the count depends on the data"
-    fi
+  allowed=
+  [[ ! "$stage" =~ ^(idle|pivots|resolver) ]] || allowed=0.5
+  [[ ! "$stage" =~ ^(released|bent) ]] || allowed=3
+  if [ -n "$allowed" ] && awk "BEGIN { exit !($spread >= $allowed) }"; then
+    fails "$case $stage: spread $spread %, must be below $allowed %: the count depends on the data"
   fi
   most=$(limit "$stage")
   if [ -n "$most" ] && [ "$max" -gt "$most" ]; then

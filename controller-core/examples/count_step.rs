@@ -25,17 +25,18 @@ use controller_core::real::Real;
 use controller_core::resolver::ResolverState;
 use controller_core::{Controller, State, Target};
 
-/// What decides how long a cycle is: whether a level is released, and the pivots of the
-/// projection.
-fn path(status: &Status) -> String {
+/// What decides how long a cycle is: whether a level is released, whether the arm is bent for it,
+/// and the pivots of the projection.
+fn path(status: &Status, bends: bool) -> String {
     let pivots = match status.pivots {
         0 => "idle".into(),
         pivots => format!("pivots-{pivots}"),
     };
-    match (status.fault, status.released.any()) {
-        (Some(_), _) => "fault".into(),
-        (None, false) => pivots,
-        (None, true) => format!("released-{pivots}"),
+    match (status.fault, status.released.any(), bends) {
+        (Some(_), _, _) => "fault".into(),
+        (None, false, _) => pivots,
+        (None, true, false) => format!("released-{pivots}"),
+        (None, true, true) => format!("bent-{pivots}"),
     }
 }
 
@@ -59,7 +60,8 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
             black_box(&measurement),
             black_box(&reference),
         );
-        println!("{} {}", case.name, path(&step.status));
+        let bends = state.data().way_out.bends();
+        println!("{} {}", case.name, path(&step.status, bends));
         black_box(step);
     }
 }

@@ -63,9 +63,9 @@ pub const PIVOT_COUNTS: usize = PIVOTS as usize + 1;
 pub struct Survey {
     /// Full cycle: checks, all stages and record.
     pub cycle: Extremes,
-    /// The same by what decides on its path: whether a level is released, and the pivots of the
-    /// projection.
-    pub paths: [[Extremes; PIVOT_COUNTS]; 2],
+    /// The same by what decides on its path: whether a level is released, then whether the arm is
+    /// bent for it as well, and the pivots of the projection.
+    pub paths: [[Extremes; PIVOT_COUNTS]; 3],
     /// The stages alone, in the order of [`Controller::STAGES`].
     pub stages: [Extremes; STAGE_COUNT],
     /// Cycles with a fault, with a torque that was cut, with a level released.
@@ -132,7 +132,7 @@ pub fn survey<T: Number>(
     let empty = overhead(clock);
     let mut survey = Survey {
         cycle: Extremes::NONE,
-        paths: [[Extremes::NONE; PIVOT_COUNTS]; 2],
+        paths: [[Extremes::NONE; PIVOT_COUNTS]; 3],
         stages: [Extremes::NONE; STAGE_COUNT],
         faults: 0,
         saturated: 0,
@@ -164,7 +164,10 @@ pub fn survey<T: Number>(
         let count = count.saturating_sub(empty);
         survey.cycle.add(count, index);
         let (released, pivots) = (step.status.released.any(), step.status.pivots);
-        let paths = survey.paths.get_mut(usize::from(released));
+        let bent = rig.state.data().way_out.bends();
+        let paths = survey
+            .paths
+            .get_mut(usize::from(released) + usize::from(bent));
         if let Some(path) = paths.and_then(|paths| paths.get_mut(usize::from(pivots))) {
             path.add(count, index);
         }

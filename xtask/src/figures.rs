@@ -76,6 +76,9 @@ pub struct Cost {
 pub struct Path {
     /// Whether a level is released.
     pub released: bool,
+    /// Whether the arm is bent for it.
+    #[serde(default)]
+    pub bent: bool,
     /// Pivots of the projection; without any it is not run.
     pub pivots: u64,
     /// How many inputs take it.
@@ -117,10 +120,10 @@ impl Path {
             (_, 1) => "cycle with 1 pivot".into(),
             (_, pivots) => format!("cycle with {pivots} pivots"),
         };
-        let released = if self.released {
-            ", a level released"
-        } else {
-            ""
+        let released = match (self.released, self.bent) {
+            (false, _) => "",
+            (true, false) => ", a level released",
+            (true, true) => ", the arm bent for a released level",
         };
         format!("{cycle}{released}")
     }
@@ -132,9 +135,15 @@ impl Controller {
         format!("{} {}", self.experiment, self.precision)
     }
 
-    /// A path, where an input took it.
+    /// The path without pivots on which the arm is bent.
+    pub fn bent(&self) -> Option<&Path> {
+        self.paths.iter().find(|path| path.bent && path.pivots == 0)
+    }
+
+    /// A path on which the arm is not bent, where an input took it.
     pub fn path(&self, released: bool, pivots: u64) -> Option<&Path> {
-        let is_it = |path: &&Path| (path.released, path.pivots) == (released, pivots);
+        let is_it =
+            |path: &&Path| (path.released, path.bent, path.pivots) == (released, false, pivots);
         self.paths.iter().find(is_it)
     }
 }
@@ -204,9 +213,10 @@ impl Figures {
                             controller.stages.push(Stage { name, cost });
                         }
                     }
-                    ("path", &[released, pivots, inputs, min, max]) => {
+                    ("path", &[way, pivots, inputs, min, max]) => {
                         controller.paths.push(Path {
-                            released: number(released)? == 1,
+                            released: number(way)? > 0,
+                            bent: number(way)? > 1,
                             pivots: number(pivots)?,
                             inputs: number(inputs)?,
                             min: number(min)?,

@@ -8,14 +8,14 @@ pub const LIMITS: [(&str, u64); 16] = [
     ("two-level f32: cycle, instructions", 12_400),
     ("case-1 f64: cycle, instructions", 17_500),
     ("case-1 f32: cycle, instructions", 15_300),
-    ("two-level f64: longest cycle, instructions", 20_600),
-    ("two-level f32: longest cycle, instructions", 18_250),
-    ("case-1 f64: longest cycle, instructions", 24_400),
-    ("case-1 f32: longest cycle, instructions", 21_950),
-    ("f64: state and stack of the cycle, bytes", 13_000),
-    ("f32: state and stack of the cycle, bytes", 6_680),
-    ("f64: flash of the linked core, bytes", 105_500),
-    ("f32: flash of the linked core, bytes", 99_900),
+    ("two-level f64: longest cycle, instructions", 24_000),
+    ("two-level f32: longest cycle, instructions", 21_500),
+    ("case-1 f64: longest cycle, instructions", 29_000),
+    ("case-1 f32: longest cycle, instructions", 25_700),
+    ("f64: state and stack of the cycle, bytes", 14_700),
+    ("f32: state and stack of the cycle, bytes", 7_600),
+    ("f64: flash of the linked core, bytes", 117_000),
+    ("f32: flash of the linked core, bytes", 111_300),
     (
         "f64 with the exact law: flash of the linked core, bytes",
         90_600,
@@ -33,6 +33,9 @@ const PIVOTS: u64 = 12;
 
 /// Smallest to largest instruction count of a path: a spread below 0.5 %.
 const SPREAD_PER_MILLE: u64 = 5;
+
+/// The same with a level released: which one it is, and whether it is stuck, is within the path.
+const SPREAD_RELEASED_PER_MILLE: u64 = 30;
 
 /// One line per figure that is beyond its limit, or that is not there.
 pub fn exceeded(figures: &Figures) -> Vec<String> {
@@ -63,9 +66,15 @@ pub fn exceeded(figures: &Figures) -> Vec<String> {
         let (of, stack) = (controller.name(), &controller.stack);
         for path in &controller.paths {
             let (name, min, max) = (path.name(), path.min, path.max);
-            if 1000 * (max - min) >= SPREAD_PER_MILLE * min {
+            let allowed = if path.released {
+                SPREAD_RELEASED_PER_MILLE
+            } else {
+                SPREAD_PER_MILLE
+            };
+            if 1000 * (max - min) >= allowed * min {
+                let percent = allowed as f64 / 10.0;
                 lines.push(format!(
-                    "{of}: {name} takes {min} to {max} instructions; the spread must be below 0.5 %"
+                    "{of}: {name} takes {min} to {max} instructions; the spread must be below {percent} %"
                 ));
             }
         }

@@ -99,6 +99,9 @@ fn paths(figures: &Figures) -> String {
         row("a level released, besides", &|it| {
             Some((max(it, true, 0)? - max(it, false, 0)?).to_string())
         }),
+        row("the arm bent for it, besides", &|it| {
+            Some((it.bent()?.max as f64 - max(it, true, 0)?).to_string())
+        }),
         row("projection, besides", &|it| {
             let stage = max(it, false, 1)? - max(it, false, 0)? - pivot(it)?;
             Some(format!("{stage:.0}"))

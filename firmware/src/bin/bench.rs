@@ -155,14 +155,14 @@ mod target {
             );
         };
         print("cycle", &found.cycle);
-        for (released, paths) in found.paths.iter().enumerate() {
+        for (way, paths) in found.paths.iter().enumerate() {
             for (pivots, path) in paths.iter().enumerate().filter(|(_, path)| path.inputs > 0) {
                 let (inputs, min, max) = (path.inputs, path.min, path.max);
                 say!(
                     "path {} {} {} {} {} {} {}",
                     name,
                     T::NAME,
-                    released,
+                    way,
                     pivots,
                     inputs,
                     min,

@@ -73,6 +73,13 @@ impl<T: Real> WayOut<T> {
         }
     }
 
+    /// Whether a level is off its target along a direction that it has lost, so that the arm is bent
+    /// for it or the level is stuck.
+    #[must_use]
+    pub fn bends(&self) -> bool {
+        self.is_begun
+    }
+
     /// Nothing where no level is released.
     #[inline]
     pub(crate) fn update(&mut self, arm: &Straight<'_, T>) {
