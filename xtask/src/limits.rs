@@ -158,7 +158,7 @@ mod tests {
             ))
         );
         // Working memory, cycle and constructor of all four.
-        assert_eq!(exceeded(&figures(9_000, Some(12_289), 1)).len(), 12);
+        assert_eq!(exceeded(&figures(9_000, Some(14_701), 1)).len(), 12);
         let lost = exceeded(&figures(9_000, None, 1));
         assert_eq!(lost.len(), 12);
         assert!(lost[11].ends_with("bytes: none, limit 12288"), "{lost:?}");
