@@ -1,6 +1,6 @@
 //! The tables of docs/limits-study.md, as Markdown.
 //!
-//! - [`arms`]: passes and motions of every arm by the law within limits;
+//! - [`arms()`]: passes and motions of every arm by the law within limits;
 //! - [`laws`]: every figure that is judged, of both laws, plants and precisions;
 //! - [`speeds`]: which joints of the LWR exceed their speed limits on the realistic plant.
 
