@@ -1,5 +1,5 @@
 //! Proof that constructor and cycle cannot panic, those of the controller and of the
-//! velocity-level resolver: on the target the panic handler calls a function that does
+//! velocity-level resolver, and that the codec of the FCI cannot: on the target the panic handler calls a function that does
 //! not exist, so that this image links only if no panic is reachable from one to seven
 //! task rows in either precision. There is no allocator either. On the host it runs what
 //! it links.
@@ -15,6 +15,9 @@ use controller_core::{
     Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
     TaskSet,
 };
+use fci::state::{FIELDS, LEN_MAX, StatePacket};
+use fci::stream::REQUEST_LEN_MAX;
+use fci::{Command, Reply, Request, RobotErrors, Sequence, Stream, Version, command};
 use firmware::log::Number;
 use firmware::scenario::{self, FixedScenario};
 
@@ -85,7 +88,49 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
         && resolution.status.fault.is_none()
 }
 
-/// Both precisions, every number of rows.
+/// Everything that the codec of the FCI does with bytes that nobody knows; whether it takes
+/// what it has made itself.
+fn exercise_codec(version: Version) -> bool {
+    let version = black_box(version);
+    let state = black_box(fci::State::default());
+    let mut room = [0; LEN_MAX];
+    let Ok(datagram) = state.emit(version, &mut room) else {
+        return false;
+    };
+    let Ok(packet) = StatePacket::new_checked(version, black_box(datagram)) else {
+        return false;
+    };
+    let numbers = packet.check_finite(black_box(&FIELDS)).is_ok();
+    let same = fci::State::parse(&packet) == state && packet.q() == state.q;
+    let errors: RobotErrors = packet.errors().iter().collect();
+    let mut sequence = Sequence::new();
+    let fresh = sequence.receive(packet.message_id()).is_fresh();
+
+    let answer = Command::torque(version, packet.message_id(), black_box([0.5; 7]), false);
+    let mut room = [0; command::LEN_MAX];
+    let read = Command::parse(version, black_box(answer.emit(version, &mut room)));
+    let answered = read.is_ok_and(|read| read.check().is_ok() && read == answer);
+
+    // Both ends of a stream: what is no request may be a reply.
+    let mut stream = Stream::new([0; REQUEST_LEN_MAX], black_box(REQUEST_LEN_MAX));
+    let mut bytes = black_box(&[2, 0, 0, 0, 7, 0, 0, 0, 12, 0, 0, 0][..]);
+    let mut requests = 0;
+    while let Ok(Ok(Some(message))) = stream.as_mut().map(|it| it.next(&mut bytes)) {
+        let mut room = [0; REQUEST_LEN_MAX];
+        match Request::parse(version, &message) {
+            Ok(request) if request.check().is_ok() => {
+                requests += usize::from(request.emit(version, message.id, &mut room).is_ok());
+            }
+            _ => {
+                let reply = Reply::parse(version, &message);
+                black_box(reply.is_ok_and(|it| it.emit(version, message.id, &mut room).is_ok()));
+            }
+        }
+    }
+    numbers && same && errors.is_empty() && fresh && answered && requests == 1
+}
+
+/// Both precisions, every number of rows; every version.
 #[cfg_attr(target_os = "none", unsafe(no_mangle))]
 #[allow(unsafe_code)] // the name of the entry
 extern "C" fn exercise_all() -> bool {
@@ -100,16 +145,17 @@ extern "C" fn exercise_all() -> bool {
             & exercise::<T, 6>()
             & exercise::<T, 7>()
     }
-    precision::<f64>() & precision::<f32>()
+    let versions = Version::ALL.map(exercise_codec);
+    precision::<f64>() & precision::<f32>() & versions.into_iter().all(|it| it)
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
     if exercise_all() {
-        println!("1 to 7 rows, f64 and f32: built and run");
+        println!("1 to 7 rows, f64 and f32; codec of the FCI: built and run");
         0.into()
     } else {
-        eprintln!("a controller was refused or its cycle was not clean");
+        eprintln!("a controller was refused, its cycle was not clean or a message was not taken");
         1.into()
     }
 }
