@@ -3,14 +3,16 @@
 //!
 //! Bottom-up: [`invalid`], errors for people; [`terminal`], what is printed;
 //! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of
-//! options and usage errors; [`mod@file`] and [`reader`], texts and what they say; [`arm`], an
-//! arm as a file; [`scenario`], an experiment as one. Beside them, of a program that has to keep a cycle:
+//! options and usage errors; [`mod@file`] and [`reader`], texts and what they say; [`keys`], what
+//! keys of files are; [`arm`], an arm as a file; [`scenario`], an experiment as one. Beside them, of a program that has to keep a cycle:
 //! [`realtime`], what the system gives it, and [`timing`], how long things took.
 
 pub mod arguments;
 pub mod arm;
+pub mod document;
 pub mod file;
 pub mod invalid;
+pub mod keys;
 pub mod names;
 pub mod ranges;
 pub mod reader;

@@ -12,8 +12,13 @@ pub fn simple(key: &str, given: &str) -> Result<(), Invalid> {
     if NAME_LETTERS.contains(given.len()) && given.chars().all(letter) {
         return Ok(());
     }
-    let allowed = format!("{NAME_LETTERS} letters, digits, '-' and '_'");
-    Err(Invalid::new(key, given, allowed))
+    Err(Invalid::new(key, given, letters()))
+}
+
+/// What such a name is made of.
+#[must_use]
+pub fn letters() -> String {
+    format!("{NAME_LETTERS} letters, digits, '-' and '_'")
 }
 
 /// A closed set of named choices.

@@ -14,7 +14,9 @@ mod push;
 mod reference;
 mod session;
 mod stroke;
+mod task;
 
+use std::marker::PhantomData;
 use std::path::Path;
 
 use controller_core::gain::diagonal;
@@ -27,7 +29,10 @@ use crate::arm::joint_limits::JointLimitsSpec;
 use crate::arm::robot::Robot;
 use crate::file::{self, is_path};
 use crate::invalid::Invalid;
-use crate::names::{MeasurementKind, Named, PlantKind, simple};
+use crate::keys::allowed::{And, Choice, Count, NameOf, Said, Simple};
+use crate::keys::keys;
+use crate::keys::words::plain_choice;
+use crate::names::{MeasurementKind, Named, PlantKind};
 use crate::ranges::{
     CYCLE_MS, DEAD_CYCLES, DURATION_S, GAIN, LEVELS, LIMIT, RATE_GAIN, ROWS, Range,
 };
@@ -36,15 +41,18 @@ use crate::reader;
 pub use arm::{EquippedArm, Mount, TOOL_POINT, ToolSpec};
 pub use contact::Interval;
 pub use hand::{Direction, Hand};
-pub use level::{AxisGain, LevelSpec, TaskSpec};
+pub use level::{AxisGain, LevelSpec};
 pub use limits::NEAR_LIMITS;
 pub use metric::{Metric, Unit};
 pub use near::{LawSpec, LevelLimitsSpec};
+pub(crate) use point::OnLink;
 pub use point::PointSpec;
 pub use push::Push;
+pub(crate) use reference::KINDS;
 pub use reference::{AxisOf, ReferenceSpec};
 pub use session::ScenarioSource;
 pub use stroke::Stroke;
+pub use task::TaskSpec;
 
 /// The scenarios that come with the program: name and TOML text.
 pub const BUILT_IN: &[(&str, &str)] = &[
@@ -76,80 +84,65 @@ fn names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
 }
 
-/// An experiment, as in its file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Scenario {
-    /// Name, also of the output folder.
-    pub name: String,
-    /// The arm: a name, or an arm file.
-    pub robot: Robot,
-    /// How it is mounted; as its table says unless given.
-    #[serde(default)]
-    pub mount: Option<Mount>,
-    /// What it carries at its flange.
-    #[serde(default)]
-    pub tool: Option<ToolSpec>,
-    /// Which law the controller has.
-    #[serde(default)]
-    pub law: LawSpec,
-    /// What the law may do with the joints.
-    #[serde(default)]
-    pub joint_limits: Option<JointLimitsSpec>,
-    /// Length \[s\].
-    pub duration_s: f64,
-    /// Control cycle \[ms\].
-    pub cycle_ms: f64,
-    /// Posture at the start \[deg\], at rest; also q_d of the null space.
-    pub start_deg: [f64; DOF],
-    /// Task levels, highest priority first.
-    #[serde(rename = "level")]
-    pub levels: Vec<LevelSpec>,
-    /// Compliance of what the tasks leave.
-    pub null_space: NullSpaceSpec,
-    /// External-torque observer.
-    pub observer: ObserverSpec,
-    /// Scripted pushes.
-    #[serde(rename = "contact", default)]
-    pub pushes: Vec<Push>,
-    /// Hands of a person, which give way.
-    #[serde(rename = "hand", default)]
-    pub hands: Vec<Hand>,
-    /// What a run must stay below.
-    #[serde(rename = "limit", default)]
-    pub limits: Vec<Limit>,
+keys! {
+    /// An experiment, as in its file.
+    #[derive(Clone, Debug)]
+    pub struct Scenario {
+        /// Name, also of the output folder.
+        pub name: String, "", Simple;
+        /// The arm: a table of the crate [`arms`](../arms/src/lib.rs), on the realistic plant as
+        /// [plants.md](plants.md) says, or an [arm file](arms.md) from the folder of the scenario.
+        pub robot: Robot, "", Said("an [arm that has a name](#arms-that-have-a-name), or an arm file such as `\"my_arm.toml\"`");
+        /// How the base plate stands.
+        pub mount: Option<Mount> = None => "as the arm's table says", "", Said(TABLE);
+        /// What is fixed to the flange, of plant and controller.
+        pub tool: Option<ToolSpec> = None => "none", "", Said(TABLE);
+        /// The law of the controller ([limits.md](limits.md)); an integrated posture needs `"exact"`.
+        pub law: LawSpec = LawSpec::WithinLimits, "", Choice;
+        /// What the law may do with the joints.
+        pub joint_limits: Option<JointLimitsSpec> = None => "by the arm", "", Said(TABLE);
+        /// Length.
+        pub duration_s: f64, "s", DURATION_S;
+        /// Control cycle.
+        pub cycle_ms: f64, "ms", CYCLE_MS;
+        /// Posture at the start, at rest; also q_d of the null space.
+        pub start_deg: [f64; DOF], "deg", Said("7, within the ranges of the joints");
+        /// Task levels, highest priority first.
+        pub levels as "level": Vec<LevelSpec>, "", And(Count(LEVELS, "levels"), SEVEN_ROWS);
+        /// Compliance of what the tasks leave.
+        pub null_space: NullSpaceSpec, "", Said(TABLE);
+        /// External-torque observer.
+        pub observer: ObserverSpec, "", Said(TABLE);
+        /// Scripted pushes.
+        pub pushes as "contact": Vec<Push> = Vec::new() => "none", "", Said(TABLES);
+        /// Hands of a person, which push and give way.
+        pub hands as "hand": Vec<Hand> = Vec::new() => "none", "", Said(TABLES);
+        /// Acceptance limits: what a run must stay below.
+        pub limits as "limit": Vec<Limit> = Vec::new() => "none", "", Said(TABLES);
+    }
 }
 
-/// Compliance of the null space.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NullSpaceSpec {
-    /// K_q \[Nm/rad\], diagonal.
-    pub stiffness: [f64; DOF],
-    /// D \[Nms/rad\], diagonal.
-    pub damping: [f64; DOF],
-    /// c \[1/s\] of the inertia-shaped damping D = c M that takes the place of
-    /// `damping` where the loop has dead time.
-    #[serde(default = "default_damping_rate")]
-    pub damping_rate: f64,
-    /// Where q_d comes from.
-    #[serde(default)]
-    pub posture: PostureSpec,
-    /// K of (14) \[1/s\], for the acceleration-level controllers.
-    #[serde(default = "default_rate_gain")]
-    pub rate_gain: f64,
-}
+const TABLE: &str = "a table";
+const TABLES: &str = "any number of tables";
+const SEVEN_ROWS: &str = "together at most 7 axes";
 
-fn default_measurement() -> String {
-    MeasurementKind::Direct.name().to_string()
-}
-
-fn default_damping_rate() -> f64 {
-    10.0
-}
-
-fn default_rate_gain() -> f64 {
-    10.0
+keys! {
+    /// Compliance of the null space.
+    #[derive(Clone, Debug)]
+    pub struct NullSpaceSpec {
+        /// K_q, diagonal.
+        pub stiffness: [f64; DOF], "Nm/rad", GAIN;
+        /// D, diagonal.
+        pub damping: [f64; DOF], "Nms/rad", GAIN;
+        /// c of D = c M, which takes the place of `damping` in a loop with dead time and over FRI.
+        pub damping_rate: f64 = 10.0, "1/s", GAIN;
+        /// Where q_d comes from: the start posture, or the integral (51) with the coupling of
+        /// moving levels or as printed; the integrals drift ([errata.md](errata.md), 8), and `run`
+        /// says before how far.
+        pub posture: PostureSpec = PostureSpec::Constant, "", Choice;
+        /// K of (14), for the acceleration-level controllers.
+        pub rate_gain: f64 = 10.0, "1/s", RATE_GAIN;
+    }
 }
 
 /// Where q_d comes from.
@@ -165,32 +158,36 @@ pub enum PostureSpec {
     IntegralUncoupled,
 }
 
-/// External-torque observer.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ObserverSpec {
-    /// K_I \[1/s\], every joint.
-    pub gain: f64,
+plain_choice!(PostureSpec);
+
+keys! {
+    /// External-torque observer.
+    #[derive(Clone, Debug)]
+    pub struct ObserverSpec {
+        /// K_I, of every joint.
+        pub gain: f64, "1/s", GAIN;
+    }
 }
 
-/// An acceptance limit, for one plant with or without contacts.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Limit {
-    /// "ideal" or "realistic".
-    pub plant: String,
-    /// With contacts or without.
-    pub contacts: bool,
-    /// "direct", "like-fri" or "fri".
-    #[serde(default = "default_measurement")]
-    pub measurement: String,
-    /// For runs with so many cycles of dead time.
-    #[serde(default)]
-    pub dead_cycles: usize,
-    /// Name of the metric, such as "level1_rms_mm".
-    pub metric: String,
-    /// The metric passes below this.
-    pub below: f64,
+keys! {
+    /// An acceptance limit, for one plant with or without contacts.
+    #[derive(Clone, Debug)]
+    pub struct Limit {
+        /// Of runs on this plant.
+        pub plant: String, "", NameOf::<PlantKind>(PhantomData);
+        /// Of runs with contacts, or without.
+        pub contacts: bool, "", Choice;
+        /// Of runs in which the controller sees the arm so.
+        pub measurement: String = MeasurementKind::Direct.name().to_string(), "",
+            NameOf::<MeasurementKind>(PhantomData);
+        /// Of runs with so many cycles of dead time.
+        pub dead_cycles: usize = 0, "", Range::new(0, DEAD_CYCLES.max as usize);
+        /// What is judged: error of a level as rms, as maximum, or as the plateau of the worst contact.
+        pub metric: String, "",
+            Said("`\"levelN_rms_mm\"`, `\"levelN_max_mm\"`, `\"levelN_plateau_mm\"`; of an orientation `_mrad`");
+        /// The metric passes below this, in its own unit.
+        pub below: f64, "mm, mrad", LIMIT;
+    }
 }
 
 impl Scenario {
@@ -252,31 +249,20 @@ impl Scenario {
     /// # Errors
     /// The first key that cannot be used.
     pub fn validate(&self) -> Result<(), Invalid> {
-        simple("name", &self.name)?;
+        self.check_keys()?;
         let arm = &self.equipped()?;
         if let Some(limits) = &self.joint_limits {
             limits
                 .validate()
                 .map_err(|error| error.in_table("joint_limits"))?;
         }
-        DURATION_S.check("duration_s", self.duration_s)?;
-        CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
-        for (&angle, link) in self.start_deg.iter().zip(&arm.parameters.links) {
-            // Back from radians to the number of the data sheet.
-            let [min, max] = link
-                .position_range
-                .map(|end| (end.to_degrees() * 1e9).round() / 1e9);
-            let thing = format_args!("start_deg of {}", link.name);
-            Range::new(min, max).check(thing, angle)?;
-        }
-        let levels = self.levels.len();
-        if !LEVELS.contains(levels) {
-            let given = format!("{levels} levels");
-            return Err(Invalid::new("level", given, LEVELS));
+        let ranges = arm.ranges_deg();
+        for ((&angle, range), joint) in self.start_deg.iter().zip(ranges).zip(arm.joints()) {
+            range.check(format_args!("start_deg of {joint}"), angle)?;
         }
         for (number, level) in self.levels.iter().enumerate() {
             level
-                .validate(arm)
+                .validate(number, arm)
                 .map_err(|error| error.in_list("level", number))?;
         }
         let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
@@ -285,9 +271,10 @@ impl Scenario {
             return Err(Invalid::new("level", given, ROWS));
         }
         self.null_space
-            .validate(arm)
+            .check_keys()
             .map_err(|error| error.in_table("null_space"))?;
-        GAIN.check("gain", self.observer.gain)
+        self.observer
+            .check_keys()
             .map_err(|error| error.in_table("observer"))?;
         for (number, push) in self.pushes.iter().enumerate() {
             push.validate(arm)
@@ -299,13 +286,8 @@ impl Scenario {
         }
         for (number, limit) in self.limits.iter().enumerate() {
             let place = |error: Invalid| error.in_list("limit", number);
-            PlantKind::from_name(&limit.plant).map_err(place)?;
-            MeasurementKind::from_name(&limit.measurement).map_err(place)?;
+            limit.check_keys().map_err(place)?;
             Metric::parse(&limit.metric, &self.levels).map_err(place)?;
-            Range::new(0, DEAD_CYCLES.max.into())
-                .check("dead_cycles", limit.dead_cycles)
-                .map_err(place)?;
-            LIMIT.check("below", limit.below).map_err(place)?;
         }
         Ok(())
     }
@@ -322,7 +304,7 @@ impl Scenario {
             .equipped()
             .unwrap_or_else(|_| EquippedArm::of(arms::ALL[0]));
         if let Some(spec) = &self.joint_limits {
-            arm.parameters.limits = spec.of_arm(&arm.parameters, self.cycle_s());
+            arm.parameters.limits = spec.of_arm(&arm.parameters);
         }
         arm
     }
@@ -395,18 +377,6 @@ impl Scenario {
             *target = level.reference.sample(origin, t_s);
         }
         reference
-    }
-}
-
-impl NullSpaceSpec {
-    fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
-        let gains = self.stiffness.iter().zip(&self.damping);
-        for (joint, (&stiffness, &damping)) in arm.joints().iter().zip(gains) {
-            GAIN.check(format_args!("stiffness of {joint}"), stiffness)?;
-            GAIN.check(format_args!("damping of {joint}"), damping)?;
-        }
-        GAIN.check("damping_rate", self.damping_rate)?;
-        RATE_GAIN.check("rate_gain", self.rate_gain).map(drop)
     }
 }
 

@@ -18,7 +18,10 @@ fn errors_name_line_key_value_and_range() {
     let flange = good.rfind("\n[flange]").expect("a flange");
     let six_joints = good[..six].to_string() + &good[flange..];
     let error = parse(&six_joints).expect_err("six").to_string();
-    assert!(error.ends_with(": joint: 6 joints; allowed: 7"), "{error}");
+    assert!(
+        error.ends_with(": joint: 6 joints; allowed: 7 joints"),
+        "{error}"
+    );
     for (from, to, line) in [
         (
             "name = \"lwr_iv\"",
@@ -33,7 +36,7 @@ fn errors_name_line_key_value_and_range() {
         (
             "gravity_m_s2 = [0.0, 0.0, -9.81]",
             "gravity_m_s2 = [0.0, 0.0, -98.1]",
-            "gravity_m_s2: 98.1; allowed: 0 to 30",
+            "gravity_m_s2 length: 98.1; allowed: 0 to 30",
         ),
         (
             "mass_kg = 2.7197684562423485",

@@ -1,19 +1,19 @@
 //! An arm file as TOML: keys, ranges, defaults, and the table that they make.
-//! `docs/arms.md` describes every key.
+//! `docs/keys.md` describes every key.
 
 use controller_core::arm::{
     ArmError, ArmModel, ArmParameters, JointLimits, Link, LinkParameters, LinkPoint, NamedPoint,
     Pose,
 };
-use controller_core::joint::{DOF, Vector3};
-use serde::Deserialize;
+use controller_core::joint::DOF;
 
 use super::joint::JointSpec;
 use super::joint_limits::JointLimitsSpec;
-use super::pose::{PoseSpec, each};
+use super::pose::PoseSpec;
 use crate::invalid::Invalid;
-use crate::names::simple;
-use crate::ranges::{DAMPING_POSTURES, GRAVITY_M_S2, LENGTH_M, LINK, POINTS, POSITION_DEG};
+use crate::keys::allowed::{And, Count, Length, Lists, Said, Simple};
+use crate::keys::keys;
+use crate::ranges::{DAMPING_POSTURES, GRAVITY_M_S2, LENGTH_M, LINK, POINTS, POSITION_DEG, Range};
 use crate::reader;
 
 /// Gravity where a file says none: upright, \[m/s2\].
@@ -33,35 +33,41 @@ pub struct OwnArm {
     damping_postures: Vec<[f64; DOF]>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ArmSpec {
-    name: String,
-    #[serde(default = "upright")]
-    gravity_m_s2: [f64; 3],
-    #[serde(default)]
-    base: PoseSpec,
-    #[serde(default)]
-    flange: PoseSpec,
-    #[serde(rename = "joint")]
-    joints: Vec<JointSpec>,
-    #[serde(rename = "point", default)]
-    points: Vec<Point>,
-    joint_limits: Option<JointLimitsSpec>,
-    #[serde(default)]
-    damping_postures_deg: Vec<[f64; DOF]>,
+keys! {
+    /// An arm, as in its file.
+    pub(crate) struct ArmSpec {
+        /// Its name in reports.
+        name: String, "", Simple;
+        /// Gravitational acceleration, base-plate axes.
+        gravity_m_s2: [f64; 3] = GRAVITY, "m/s2", Length(GRAVITY_M_S2);
+        /// DH frame 0 in the base plate.
+        base: PoseSpec = PoseSpec::default() => "the base plate", "", Said("a table");
+        /// The flange in DH frame 7.
+        flange: PoseSpec = PoseSpec::default() => "DH frame 7", "", Said("a table");
+        /// Joints with their links, base to flange.
+        joints as "joint": Vec<JointSpec>, "", Count(Range::new(DOF, DOF), "joints");
+        /// Points that have a name, beside `flange`, which every arm has; import writes `elbow`
+        /// and `wrist`, origins of DH frames 3 and 5.
+        points as "point": Vec<Point> = Vec::new() => "none", "", Count(POINTS, "points");
+        /// What the law may do with the joints.
+        joint_limits: Option<JointLimitsSpec> = None => "by a [rule](limits.md)", "",
+            Said("a table with all keys of [`[joint_limits]`](#joint_limits)");
+        /// Postures of the sampling bound.
+        damping_postures_deg: Vec<[f64; DOF]> = Vec::new() => "searched when a controller is made",
+            "deg", Lists(Count(DAMPING_POSTURES, "postures"), POSITION_DEG);
+    }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Point {
-    name: String,
-    link: usize,
-    offset_m: [f64; 3],
-}
-
-fn upright() -> [f64; 3] {
-    GRAVITY
+keys! {
+    /// A point that has a name.
+    pub(crate) struct Point {
+        /// Its name in scenarios.
+        name: String, "", And(Simple, "none that another point has, nor `flange` or `tool`");
+        /// Number of the link that it is on, base to flange.
+        link: usize, "", LINK;
+        /// Where it is in the DH frame of the link.
+        offset_m: [f64; 3], "m", LENGTH_M;
+    }
 }
 
 /// Reads and checks an arm file.
@@ -156,9 +162,7 @@ fn unnamed(arm: &ArmParameters) -> ArmParameters {
 
 impl ArmSpec {
     fn arm(&self) -> Result<OwnArm, Invalid> {
-        simple("name", &self.name)?;
-        let gravity = Vector3::from(self.gravity_m_s2).norm();
-        GRAVITY_M_S2.check("gravity_m_s2", gravity)?;
+        self.check_keys()?;
         let base = self.base.pose().map_err(|error| error.in_table("base"))?;
         let flange = self
             .flange
@@ -169,18 +173,6 @@ impl ArmSpec {
             Some(limits) => Some(complete(limits).map_err(|error| error.in_table("joint_limits"))?),
             None => None,
         };
-        let postures = self.damping_postures_deg.len();
-        if !DAMPING_POSTURES.contains(postures) {
-            let given = format!("{postures} postures");
-            return Err(Invalid::new(
-                "damping_postures_deg",
-                given,
-                DAMPING_POSTURES,
-            ));
-        }
-        for posture in &self.damping_postures_deg {
-            each(POSITION_DEG, "damping_postures_deg", posture)?;
-        }
         let numbers = ArmParameters {
             name: "",
             base,
@@ -235,21 +227,15 @@ impl ArmSpec {
 
     /// The named points, and the flange.
     fn points(&self, flange: &Pose) -> Result<Vec<(String, LinkPoint)>, Invalid> {
-        let count = self.points.len();
-        if !POINTS.contains(count) {
-            return Err(Invalid::new("point", format!("{count} points"), POINTS));
-        }
-        let mut points: Vec<(String, LinkPoint)> = Vec::with_capacity(count + 1);
+        let mut points: Vec<(String, LinkPoint)> = Vec::with_capacity(self.points.len() + 1);
         for (number, point) in self.points.iter().enumerate() {
             let place = |error: Invalid| error.in_list("point", number);
-            simple("name", &point.name).map_err(place)?;
+            point.check_keys().map_err(place)?;
             let twice = points.iter().any(|(name, _)| *name == point.name);
             if twice || TAKEN.contains(&point.name.as_str()) {
                 let allowed = "another name than other points have, and than flange and tool";
                 return Err(place(Invalid::new("name", &point.name, allowed)));
             }
-            LINK.check("link", point.link).map_err(place)?;
-            each(LENGTH_M, "offset_m", &point.offset_m).map_err(place)?;
             let point_of_link = LinkPoint {
                 link: Link::from_number(point.link).unwrap_or(Link::L7),
                 offset: point.offset_m,

@@ -3,44 +3,32 @@
 use controller_core::arm::Pose;
 use controller_core::joint::Matrix3;
 use controller_core::real::Real;
-use serde::Deserialize;
 
 use crate::invalid::Invalid;
-use crate::ranges::{ANGLE_DEG, LENGTH_M, Range};
+use crate::keys::keys;
+use crate::ranges::{ANGLE_DEG, LENGTH_M};
 
-/// Pose of a frame in its parent.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PoseSpec {
-    /// Origin of the frame in the parent \[m\].
-    #[serde(default)]
-    pub shift_m: [f64; 3],
-    /// Roll, pitch, yaw of the frame in the parent \[deg\]: see [`rotation`].
-    #[serde(default)]
-    pub rpy_deg: [f64; 3],
+keys! {
+    /// Pose of a frame in its parent.
+    #[derive(Clone, Copy, Debug, Default)]
+    pub struct PoseSpec {
+        /// Origin of the frame in its parent.
+        pub shift_m: [f64; 3] = [0.0; 3], "m", LENGTH_M;
+        /// Roll, pitch, yaw of the frame in its parent, Rz(yaw) Ry(pitch) Rx(roll).
+        pub rpy_deg: [f64; 3] = [0.0; 3], "deg", ANGLE_DEG;
+    }
 }
 
 impl PoseSpec {
     /// # Errors
     /// A length or an angle outside its range.
     pub fn pose(&self) -> Result<Pose, Invalid> {
-        each(LENGTH_M, "shift_m", &self.shift_m)?;
-        each(ANGLE_DEG, "rpy_deg", &self.rpy_deg)?;
+        self.check_keys()?;
         Ok(Pose {
             rotation: rotation(self.rpy_deg),
             shift: self.shift_m,
         })
     }
-}
-
-/// Checks every one of `values`.
-///
-/// # Errors
-/// The first that is outside the range, as one of `name`.
-pub fn each(range: Range<f64>, name: &str, values: &[f64]) -> Result<(), Invalid> {
-    values
-        .iter()
-        .try_for_each(|&value| range.check(name, value).map(drop))
 }
 
 /// Rotation from a frame to its parent by roll, pitch and yaw \[deg\], turns about x, then y,

@@ -3,44 +3,45 @@
 use controller_core::arm::{ArmError, ArmModel, ArmParameters, Pose, Tool};
 use controller_core::joint::{DOF, Vector3};
 use controller_core::{LinkFrame, LinkPoint};
-use serde::Deserialize;
 
-use crate::arm::pose::{each, rotation};
+use crate::arm::file::POSSIBLE;
+use crate::arm::pose::rotation;
 use crate::arm::robot::Robot;
 use crate::invalid::Invalid;
-use crate::ranges::{ANGLE_DEG, INERTIA_KG_M2, OFFSET_M, TOOL_MASS_KG};
+use crate::keys::allowed::And;
+use crate::keys::keys;
+use crate::ranges::{ANGLE_DEG, INERTIA_KG_M2, OFFSET_M, Range, TOOL_MASS_KG};
 
 /// Name of the point in which the frame of a tool has its origin.
 pub const TOOL_POINT: &str = "tool";
 
-/// How the base plate stands in a room whose z axis points up. The base-plate frame stands
-/// with it: gravity is turned into that frame, and all else there stays what it is.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mount {
-    /// Roll, pitch, yaw of the base-plate frame \[deg\]: turns about x, then y, then z of the
-    /// room, Rz(yaw) Ry(pitch) Rx(roll). So have it URDF and ROS; KUKA's A, B, C are yaw, pitch,
-    /// roll.
-    pub rpy_deg: [f64; 3],
+keys! {
+    /// How the base plate stands in a room whose z axis points up. The base-plate frame stands
+    /// with it: gravity is turned into that frame, and all else there stays what it is.
+    #[derive(Clone, Debug)]
+    pub struct Mount {
+        /// Roll, pitch, yaw of the base-plate frame in the room: turns about x, then y, then z of
+        /// the room, Rz(yaw) Ry(pitch) Rx(roll), as in URDF and ROS; KUKA's A, B, C are yaw,
+        /// pitch, roll.
+        pub rpy_deg: [f64; 3], "deg", ANGLE_DEG;
+    }
 }
 
-/// What is fixed to the flange, as one body.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ToolSpec {
-    /// Origin of the tool frame in the flange \[m\].
-    #[serde(default)]
-    pub shift_m: [f64; 3],
-    /// Roll, pitch, yaw of the tool frame in the flange \[deg\], as those of a [`Mount`].
-    #[serde(default)]
-    pub rpy_deg: [f64; 3],
-    /// Mass \[kg\].
-    pub mass_kg: f64,
-    /// Centre of mass \[m\], tool frame.
-    pub center_of_mass_m: [f64; 3],
-    /// Inertia about the centre of mass \[kg m2\], axes of the tool frame: Ixx Ixy Ixz Iyy
-    /// Iyz Izz.
-    pub inertia_kg_m2: [f64; 6],
+keys! {
+    /// What is fixed to the flange, as one body.
+    #[derive(Clone, Debug)]
+    pub struct ToolSpec {
+        /// Origin of the tool frame in the flange.
+        pub shift_m: [f64; 3] = [0.0; 3], "m", OFFSET_M;
+        /// Roll, pitch, yaw of the tool frame in the flange, as of a mount.
+        pub rpy_deg: [f64; 3] = [0.0; 3], "deg", ANGLE_DEG;
+        /// Mass.
+        pub mass_kg: f64, "kg", TOOL_MASS_KG;
+        /// Centre of mass, tool frame.
+        pub center_of_mass_m: [f64; 3], "m", OFFSET_M;
+        /// Ixx Ixy Ixz Iyy Iyz Izz about the centre of mass, axes of the tool frame.
+        pub inertia_kg_m2: [f64; 6], "kg m2", And(INERTIA_KG_M2, "of a body that can be");
+    }
 }
 
 /// An arm as it stands: the table with gravity as it is mounted and with its tool.
@@ -84,7 +85,9 @@ impl EquippedArm {
     ) -> Result<Self, Invalid> {
         let mut arm = Self::of(table);
         if let Some(mount) = mount {
-            each(ANGLE_DEG, "rpy_deg", &mount.rpy_deg).map_err(|error| error.in_table("mount"))?;
+            mount
+                .check_keys()
+                .map_err(|error| error.in_table("mount"))?;
             arm.parameters.gravity = mount.gravity(&table.gravity);
         }
         if let Some(spec) = tool {
@@ -136,6 +139,18 @@ impl EquippedArm {
     pub fn joints(&self) -> [&'static str; DOF] {
         self.parameters.links.map(|link| link.name)
     }
+
+    /// Where the joints may be \[deg\], base to flange: the numbers of the data sheet.
+    #[must_use]
+    pub fn ranges_deg(&self) -> [Range<f64>; DOF] {
+        self.parameters.links.map(|link| {
+            // Back from radians.
+            let [min, max] = link
+                .position_range
+                .map(|end| (end.to_degrees() * 1e9).round() / 1e9);
+            Range::new(min, max)
+        })
+    }
 }
 
 impl Mount {
@@ -151,11 +166,7 @@ impl Mount {
 impl ToolSpec {
     /// The tool, which must be one that a body can be.
     fn tool(&self, arm: &ArmParameters) -> Result<Tool, Invalid> {
-        each(OFFSET_M, "shift_m", &self.shift_m)?;
-        each(ANGLE_DEG, "rpy_deg", &self.rpy_deg)?;
-        TOOL_MASS_KG.check("mass_kg", self.mass_kg)?;
-        each(OFFSET_M, "center_of_mass_m", &self.center_of_mass_m)?;
-        each(INERTIA_KG_M2, "inertia_kg_m2", &self.inertia_kg_m2)?;
+        self.check_keys()?;
         let tool = Tool {
             pose: Pose {
                 rotation: rotation(self.rpy_deg),
@@ -175,8 +186,7 @@ impl ToolSpec {
             Err(ArmError::ImpossibleInertia { .. }) => Err(Invalid::new(
                 "inertia_kg_m2",
                 format_args!("{:?}", self.inertia_kg_m2),
-                "Ixx, Ixy, Ixz, Iyy, Iyz, Izz of a body: principal moments of at least 0, none \
-                 above the sum of the other two",
+                POSSIBLE,
             )),
             Err(error) => Err(Invalid::line(error)),
         }

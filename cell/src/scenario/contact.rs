@@ -1,13 +1,21 @@
 //! When contacts act.
 
 use crate::invalid::Invalid;
-use crate::ranges::TIME_S;
 
 /// How long after a contact its effect still counts as inside \[s\].
 pub const AFTERMATH_S: f64 = 0.3;
 
 /// Length of the stretch before the force goes down whose mean error is the plateau \[s\].
 pub const PLATEAU_S: f64 = 0.2;
+
+/// What the start of a contact has to be.
+pub(super) const BEFORE_END: &str = "before `to_s`";
+
+/// What the end of a contact has to be.
+pub(super) const AFTER_START: &str = "after `from_s`";
+
+/// What a ramp of a contact has to be.
+pub(super) const HALF_INTERVAL: &str = "above 0, at most half the interval";
 
 /// When a contact acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,10 +43,8 @@ impl Interval {
     }
 }
 
-/// Checks start and end, gives the length \[s\].
-pub(super) fn validate_times(from_s: f64, to_s: f64) -> Result<f64, Invalid> {
-    TIME_S.check("from_s", from_s)?;
-    TIME_S.check("to_s", to_s)?;
+/// The length \[s\] of a contact, which must not end before it starts.
+pub(super) fn length(from_s: f64, to_s: f64) -> Result<f64, Invalid> {
     if to_s <= from_s {
         return Err(Invalid::new(
             "to_s",

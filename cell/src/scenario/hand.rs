@@ -6,32 +6,35 @@ use controller_core::task::trajectory::quintic;
 use serde::Deserialize;
 
 use super::arm::EquippedArm;
-use super::contact::{Interval, validate_times};
-use super::point::PointSpec;
+use super::contact::{AFTER_START, BEFORE_END, HALF_INTERVAL, Interval, length};
+use super::point::{POINT, PointSpec};
 use crate::invalid::Invalid;
-use crate::ranges::{HAND_DAMPING_NS_M, HAND_STIFFNESS_N_M, HAND_TRAVEL_M, Range};
+use crate::keys::allowed::{And, Choice, Said};
+use crate::keys::keys;
+use crate::ranges::{HAND_DAMPING_NS_M, HAND_STIFFNESS_N_M, HAND_TRAVEL_M, Range, TIME_S};
 
-/// F = max(0, k (y0 + travel b((t - from) / approach) b((to - t) / approach) - y) - d dy),
-/// y the point's coordinate along `direction`, y0 its value at the start.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Hand {
-    /// Where the hand lies.
-    pub point: PointSpec,
-    /// Start \[s\].
-    pub from_s: f64,
-    /// End \[s\].
-    pub to_s: f64,
-    /// Base-plate axis along which it pushes.
-    pub direction: Direction,
-    /// k \[N/m\].
-    pub stiffness_n_m: f64,
-    /// d \[Ns/m\].
-    pub damping_ns_m: f64,
-    /// How far the hand moves \[m\].
-    pub travel_m: f64,
-    /// Time to move there, and to go back \[s\].
-    pub approach_s: f64,
+keys! {
+    /// F = max(0, k (y0 + travel b((t - from) / approach) b((to - t) / approach) - y) - d dy),
+    /// y the point's coordinate along `direction`, y0 its value at the start.
+    #[derive(Clone, Debug)]
+    pub struct Hand {
+        /// Where the hand lies.
+        pub point: PointSpec, "", Said(POINT);
+        /// Start.
+        pub from_s: f64, "s", And(TIME_S, BEFORE_END);
+        /// End.
+        pub to_s: f64, "s", And(TIME_S, AFTER_START);
+        /// Base-plate axis along which it pushes.
+        pub direction: Direction, "", Choice;
+        /// k of its spring.
+        pub stiffness_n_m: f64, "N/m", HAND_STIFFNESS_N_M;
+        /// d of its damper.
+        pub damping_ns_m: f64, "Ns/m", HAND_DAMPING_NS_M;
+        /// How far it moves the point, if that gave no resistance.
+        pub travel_m: f64, "m", HAND_TRAVEL_M;
+        /// Time to move there, and to go back.
+        pub approach_s: f64, "s", Said(HALF_INTERVAL);
+    }
 }
 
 /// A base-plate axis.
@@ -53,11 +56,11 @@ impl Hand {
     /// What cannot be used.
     pub fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
         self.point.validate(arm)?;
-        let half = validate_times(self.from_s, self.to_s)? / 2.0;
-        Range::above(0.0, half).check("approach_s", self.approach_s)?;
-        HAND_STIFFNESS_N_M.check("stiffness_n_m", self.stiffness_n_m)?;
-        HAND_DAMPING_NS_M.check("damping_ns_m", self.damping_ns_m)?;
-        HAND_TRAVEL_M.check("travel_m", self.travel_m).map(drop)
+        self.check_keys()?;
+        let half = length(self.from_s, self.to_s)? / 2.0;
+        Range::above(0.0, half)
+            .check("approach_s", self.approach_s)
+            .map(drop)
     }
 
     /// When it acts.

@@ -5,43 +5,40 @@ use serde::Deserialize;
 
 use super::arm::EquippedArm;
 use super::near::LevelLimitsSpec;
-use super::point::PointSpec;
+use super::point::{POINT, PointSpec};
 use super::reference::ReferenceSpec;
+use super::task::TaskSpec;
 use crate::invalid::Invalid;
+use crate::keys::allowed::{And, AxesOf, Choice, Said};
+use crate::keys::keys;
+use crate::keys::numbers::Numbers;
 use crate::ranges::GAIN;
 
-/// What a level tracks.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum TaskSpec {
-    /// The position of the point.
-    #[default]
-    Position,
-    /// The orientation of the frame that turns with the point ([`PointSpec::frame`]).
-    Orientation,
+keys! {
+    /// One task level.
+    #[derive(Clone, Debug)]
+    pub struct LevelSpec {
+        /// What is tracked: the position of the point, or the orientation of the frame that turns
+        /// with it, which is that of flange or tool for the points of these names, else the DH
+        /// frame of the point's link.
+        pub task: TaskSpec = TaskSpec::Position, "", Choice;
+        /// Controlled point.
+        pub point: PointSpec, "", Said(POINT);
+        /// Controlled base-plate axes.
+        pub axes: String, "", AxesOf;
+        /// K_p.
+        pub stiffness: AxisGain, "1/s2", And(GAIN, ONE_OR_EACH);
+        /// K_d.
+        pub damping: AxisGain, "1/s", And(GAIN, ONE_OR_EACH);
+        /// What happens near singularities and far from the target.
+        pub limits: Option<LevelLimitsSpec> = None => "none", "", Said("a table");
+        /// Motion about where the level is at the start.
+        pub reference: ReferenceSpec, "", Said("a table that says its `kind`");
+    }
 }
 
-/// One task level.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LevelSpec {
-    /// Position or orientation.
-    #[serde(default)]
-    pub task: TaskSpec,
-    /// Controlled point.
-    pub point: PointSpec,
-    /// Controlled base-plate axes, such as "xyz".
-    pub axes: String,
-    /// K_p \[1/s2\].
-    pub stiffness: AxisGain,
-    /// K_d \[1/s\].
-    pub damping: AxisGain,
-    /// What happens near singularities and far from the target.
-    #[serde(default)]
-    pub limits: Option<LevelLimitsSpec>,
-    /// Motion of the point.
-    pub reference: ReferenceSpec,
-}
+/// What gains of several axes are.
+const ONE_OR_EACH: &str = "one for all axes, or a list with one for each";
 
 /// One gain for all axes of a task, or one for each.
 #[derive(Clone, Debug, Deserialize)]
@@ -57,15 +54,10 @@ pub enum AxisGain {
 }
 
 impl LevelSpec {
-    pub(super) fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
+    pub(super) fn validate(&self, place: usize, arm: &EquippedArm) -> Result<(), Invalid> {
         self.point.validate(arm)?;
-        let Some(axes) = Axes::from_name(&self.axes) else {
-            return Err(Invalid::new(
-                "axes",
-                &self.axes,
-                "letters of xyz in this order, such as xyz, xy, z",
-            ));
-        };
+        self.check_keys()?;
+        let axes = self.axes();
         for (name, gain) in [("stiffness", &self.stiffness), ("damping", &self.damping)] {
             if let AxisGain::PerAxis(values) = gain
                 && values.len() != axes.count()
@@ -77,23 +69,11 @@ impl LevelSpec {
                     allowed,
                 ));
             }
-            for value in gain.values() {
-                GAIN.check(name, value)?;
-            }
         }
-        if self.reference.is_rotation() == Some(self.task != TaskSpec::Orientation) {
-            let (given, allowed) = match self.task {
-                TaskSpec::Position => (
-                    "swing",
-                    "hold, move, there-and-back, circle, spiral for a position",
-                ),
-                TaskSpec::Orientation => ("a motion of a point", "hold, swing for an orientation"),
-            };
-            return Err(Invalid::new("reference", given, allowed));
-        }
+        self.reference.fits(self.task)?;
         if let Some(limits) = &self.limits {
             limits
-                .validate()
+                .validate(place)
                 .map_err(|error| error.in_table("limits"))?;
         }
         self.reference
@@ -101,10 +81,15 @@ impl LevelSpec {
             .map_err(|error| error.in_table("reference"))
     }
 
+    /// The controlled axes; all where they are not valid.
+    fn axes(&self) -> Axes {
+        Axes::from_name(&self.axes).unwrap_or(Axes::XYZ)
+    }
+
     /// The core's task for `arm`, at the place `place`, counted from 0. The level must be valid.
     #[must_use]
     pub fn task(&self, place: usize, arm: &EquippedArm) -> Task {
-        let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
+        let axes = self.axes();
         let spread = |gain: &AxisGain| match gain {
             AxisGain::Uniform(value) => [*value; 3],
             AxisGain::PerAxis(values) => {
@@ -139,11 +124,15 @@ impl LevelSpec {
     }
 }
 
-impl AxisGain {
-    fn values(&self) -> Vec<f64> {
+impl Numbers for AxisGain {
+    fn how_many() -> String {
+        String::new()
+    }
+
+    fn numbers(&self) -> &[f64] {
         match self {
-            Self::Uniform(value) => vec![*value],
-            Self::PerAxis(values) => values.clone(),
+            Self::Uniform(value) => value.numbers(),
+            Self::PerAxis(values) => values,
         }
     }
 }

@@ -55,6 +55,26 @@ pub const NEAR_LIMITS: &[(&str, &str)] = &[
         "wrist-straight",
         include_str!("../../scenarios/limits/wrist-straight.toml"),
     ),
+    (
+        "straight-back",
+        include_str!("../../scenarios/limits/straight-back.toml"),
+    ),
+    (
+        "straight-back-orientation",
+        include_str!("../../scenarios/limits/straight-back-orientation.toml"),
+    ),
+    (
+        "straight-back-below-orientation",
+        include_str!("../../scenarios/limits/straight-back-below-orientation.toml"),
+    ),
+    (
+        "upright-back",
+        include_str!("../../scenarios/limits/upright-back.toml"),
+    ),
+    (
+        "bent-1-back-wrist",
+        include_str!("../../scenarios/limits/bent-1-back-wrist.toml"),
+    ),
 ];
 
 #[cfg(test)]

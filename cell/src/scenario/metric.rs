@@ -1,6 +1,7 @@
 //! Figures that a limit can name, and their units.
 
-use super::level::{LevelSpec, TaskSpec};
+use super::level::LevelSpec;
+use super::task::TaskSpec;
 use crate::invalid::Invalid;
 
 /// A figure that an acceptance limit can name.

@@ -5,10 +5,15 @@ use serde::Deserialize;
 
 use super::arm::{EquippedArm, TOOL_POINT};
 use crate::invalid::Invalid;
+use crate::keys::keys;
 use crate::ranges::{LINK, OFFSET_M};
 
 /// Name of the point in which the frame of the flange has its origin, of every arm.
 const FLANGE_POINT: &str = "flange";
+
+/// What a point may be.
+pub(super) const POINT: &str = "a [point of the arm](#arms-that-have-a-name), `\"tool\"` where there is one, or a table with \
+     `link` and `offset_m`";
 
 /// A point fixed to a link.
 #[derive(Clone, Debug, Deserialize)]
@@ -23,14 +28,15 @@ pub enum PointSpec {
     OnLink(OnLink),
 }
 
-/// A point given in the DH frame of a link.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OnLink {
-    /// 1..=7.
-    pub link: usize,
-    /// Position \[m\] in that frame.
-    pub offset_m: [f64; 3],
+keys! {
+    /// A point given in the DH frame of a link.
+    #[derive(Clone, Debug)]
+    pub struct OnLink {
+        /// Number of the link, base to flange.
+        pub link: usize, "", LINK;
+        /// Where the point is in the DH frame of the link.
+        pub offset_m: [f64; 3], "m", OFFSET_M;
+    }
 }
 
 impl PointSpec {
@@ -42,12 +48,7 @@ impl PointSpec {
         match self {
             Self::Name(name) if arm.point(name).is_some() => Ok(()),
             Self::Name(name) => Err(Invalid::name("point", name, &arm.point_names())),
-            Self::OnLink(OnLink { link, offset_m }) => {
-                LINK.check("link", *link)?;
-                offset_m
-                    .iter()
-                    .try_for_each(|&x| OFFSET_M.check("offset_m", x).map(drop))
-            }
+            Self::OnLink(point) => point.check_keys(),
         }
     }
 

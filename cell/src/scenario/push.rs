@@ -1,28 +1,30 @@
 //! A scripted push: constant force between two linear ramps.
 
 use controller_core::joint::Vector3;
-use serde::Deserialize;
 
 use super::arm::EquippedArm;
-use super::contact::{Interval, validate_times};
-use super::point::PointSpec;
+use super::contact::{AFTER_START, BEFORE_END, HALF_INTERVAL, Interval, length};
+use super::point::{POINT, PointSpec};
 use crate::invalid::Invalid;
-use crate::ranges::{FORCE_N, Range};
+use crate::keys::allowed::{And, Said};
+use crate::keys::keys;
+use crate::ranges::{FORCE_N, Range, TIME_S};
 
-/// Force on a point of the arm, by the clock.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Push {
-    /// Where the force acts.
-    pub point: PointSpec,
-    /// Start \[s\].
-    pub from_s: f64,
-    /// End \[s\].
-    pub to_s: f64,
-    /// Length of each ramp, inside the interval \[s\].
-    pub ramp_s: f64,
-    /// Force on the arm \[N\], base-plate axes.
-    pub force_n: [f64; 3],
+keys! {
+    /// Force on a point of the arm, by the clock.
+    #[derive(Clone, Debug)]
+    pub struct Push {
+        /// Where the force acts.
+        pub point: PointSpec, "", Said(POINT);
+        /// Start.
+        pub from_s: f64, "s", And(TIME_S, BEFORE_END);
+        /// End.
+        pub to_s: f64, "s", And(TIME_S, AFTER_START);
+        /// Length of each of the two linear ramps, inside the interval.
+        pub ramp_s: f64, "s", Said(HALF_INTERVAL);
+        /// Force on the arm, base-plate axes.
+        pub force_n: [f64; 3], "N", FORCE_N;
+    }
 }
 
 impl Push {
@@ -32,11 +34,11 @@ impl Push {
     /// What cannot be used.
     pub fn validate(&self, arm: &EquippedArm) -> Result<(), Invalid> {
         self.point.validate(arm)?;
-        let half = validate_times(self.from_s, self.to_s)? / 2.0;
-        Range::above(0.0, half).check("ramp_s", self.ramp_s)?;
-        self.force_n
-            .iter()
-            .try_for_each(|&force| FORCE_N.check("force_n", force).map(drop))
+        self.check_keys()?;
+        let half = length(self.from_s, self.to_s)? / 2.0;
+        Range::above(0.0, half)
+            .check("ramp_s", self.ramp_s)
+            .map(drop)
     }
 
     /// When it acts.

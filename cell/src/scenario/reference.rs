@@ -7,8 +7,12 @@ use controller_core::task::trajectory::{Plane, Rotation, Trajectory};
 use serde::Deserialize;
 
 use super::stroke::Stroke;
+use super::task::TaskSpec;
 use crate::invalid::Invalid;
-use crate::ranges::{AXIS_LENGTH, DURATION_S, OFFSET_M, PERIOD_S, RADIUS_M, SWING_DEG};
+use crate::keys::allowed::{And, Choice, Length, Said};
+use crate::keys::words::plain_choice;
+use crate::keys::{Key, keys};
+use crate::ranges::{AXIS_LENGTH, DURATION_S, OFFSET_M, PERIOD_S, RADIUS_M, SWING_DEG, TIME_S};
 
 /// Motion of a level's point about where it is at the start; in files a table that says its
 /// kind.
@@ -18,12 +22,7 @@ pub enum ReferenceSpec {
     /// Rest.
     Hold {},
     /// Straight move, then rest.
-    Move {
-        /// Displacement \[m\].
-        by_m: [f64; 3],
-        /// Time of the move \[s\].
-        duration_s: f64,
-    },
+    Move(Straight),
     /// Straight move, rest at its end, and back.
     ThereAndBack(ThereAndBack),
     /// A circle that reaches its radius in `growth_s`.
@@ -34,40 +33,54 @@ pub enum ReferenceSpec {
     Swing(Swing),
 }
 
-/// A straight move, there and back.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ThereAndBack {
-    /// Displacement \[m\] of the far end.
-    pub by_m: [f64; 3],
-    /// When it starts \[s\].
-    #[serde(default)]
-    pub from_s: f64,
-    /// Time of one way \[s\].
-    pub duration_s: f64,
-    /// Time of the ramps of an even speed \[s\]; none: a quintic blend.
-    pub ramp_s: Option<f64>,
-    /// Rest at the far end \[s\].
-    #[serde(default)]
-    pub hold_s: f64,
+keys! {
+    /// A straight move.
+    #[derive(Clone, Debug)]
+    pub struct Straight {
+        /// Displacement.
+        pub by_m: [f64; 3], "m", OFFSET_M;
+        /// Time of the move, a quintic blend.
+        pub duration_s: f64, "s", DURATION_S;
+    }
 }
 
-/// Turning to and fro about an axis.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Swing {
-    /// Axis, normalised when read.
-    pub axis: [f64; 3],
-    /// Of which frame it is one.
-    #[serde(default)]
-    pub axis_of: AxisOf,
-    /// Largest angle \[deg\].
-    pub angle_deg: f64,
-    /// Time of one swing \[s\].
-    pub period_s: f64,
-    /// Time in which the angle grows \[s\].
-    pub growth_s: f64,
+keys! {
+    /// A straight move, there and back.
+    #[derive(Clone, Debug)]
+    pub struct ThereAndBack {
+        /// Displacement of the far end.
+        pub by_m: [f64; 3], "m", OFFSET_M;
+        /// When it starts.
+        pub from_s: f64 = 0.0, "s", TIME_S;
+        /// Time of one way.
+        pub duration_s: f64, "s", And(DURATION_S, "at least twice `ramp_s`");
+        /// Ramps of the speed along a cosine, even between them.
+        pub ramp_s: Option<f64> = None => "a quintic blend", "s",
+            Said("above 0, at most half of `duration_s`");
+        /// Rest at the far end.
+        pub hold_s: f64 = 0.0, "s", TIME_S;
+    }
 }
+
+keys! {
+    /// Turning to and fro about an axis.
+    #[derive(Clone, Debug)]
+    pub struct Swing {
+        /// Axis, normalised when read.
+        pub axis: [f64; 3], "", Length(AXIS_LENGTH);
+        /// Of what the axis is one: of the base plate, or of the frame that swings, as it is at
+        /// the start.
+        pub axis_of: AxisOf = AxisOf::BasePlate, "", Choice;
+        /// Largest angle.
+        pub angle_deg: f64, "deg", SWING_DEG;
+        /// Time of one swing.
+        pub period_s: f64, "s", PERIOD_S;
+        /// Time in which the angle grows.
+        pub growth_s: f64, "s", PERIOD_S;
+    }
+}
+
+plain_choice!(AxisOf);
 
 /// The frame of the axis of a swing.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -80,18 +93,19 @@ pub enum AxisOf {
     Own,
 }
 
-/// Turning in a plane.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Turn {
-    /// Plane, first axis first.
-    pub plane: PlaneSpec,
-    /// Radius in the end \[m\].
-    pub radius_m: f64,
-    /// Time of one turn \[s\].
-    pub period_s: f64,
-    /// Time in which the radius grows \[s\].
-    pub growth_s: f64,
+keys! {
+    /// Turning in a plane.
+    #[derive(Clone, Debug)]
+    pub struct Turn {
+        /// It turns from the first base-plate axis to the second.
+        pub plane: PlaneSpec, "", Choice;
+        /// Radius in the end.
+        pub radius_m: f64, "m", RADIUS_M;
+        /// Time of one turn.
+        pub period_s: f64, "s", PERIOD_S;
+        /// Time in which the radius grows.
+        pub growth_s: f64, "s", PERIOD_S;
+    }
 }
 
 /// A plane of two base-plate axes.
@@ -106,6 +120,40 @@ pub enum PlaneSpec {
     Yz,
 }
 
+/// A kind of reference.
+pub(crate) struct Kind {
+    /// Its word.
+    pub word: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+    /// Tasks that it is for.
+    pub tasks: &'static [TaskSpec],
+}
+
+/// All of them.
+pub(crate) const KINDS: [Kind; 6] = {
+    const fn of_points(word: &'static str, keys: &'static [Key]) -> Kind {
+        let tasks = &[TaskSpec::Position];
+        Kind { word, keys, tasks }
+    }
+    [
+        Kind {
+            word: "hold",
+            keys: &[],
+            tasks: &[TaskSpec::Position, TaskSpec::Orientation],
+        },
+        of_points("move", Straight::KEYS),
+        of_points("there-and-back", ThereAndBack::KEYS),
+        of_points("circle", Turn::KEYS),
+        of_points("spiral", Turn::KEYS),
+        Kind {
+            word: "swing",
+            keys: Swing::KEYS,
+            tasks: &[TaskSpec::Orientation],
+        },
+    ]
+};
+
 impl ReferenceSpec {
     /// Checks the ranges.
     ///
@@ -114,43 +162,42 @@ impl ReferenceSpec {
     pub fn validate(&self) -> Result<(), Invalid> {
         match self {
             Self::Hold {} => Ok(()),
-            Self::Move { by_m, duration_s } => {
-                DURATION_S.check("duration_s", *duration_s)?;
-                by_m.iter()
-                    .try_for_each(|&x| OFFSET_M.check("by_m", x).map(drop))
-            }
+            Self::Move(straight) => straight.check_keys(),
             Self::ThereAndBack(motion) => {
-                motion.stroke().validate()?;
-                motion
-                    .by_m
-                    .iter()
-                    .try_for_each(|&x| OFFSET_M.check("by_m", x).map(drop))
+                motion.check_keys()?;
+                motion.stroke().validate()
             }
-            Self::Circle(turn) | Self::Spiral(turn) => {
-                RADIUS_M.check("radius_m", turn.radius_m)?;
-                PERIOD_S.check("period_s", turn.period_s)?;
-                PERIOD_S.check("growth_s", turn.growth_s).map(drop)
-            }
-            Self::Swing(swing) => {
-                let norm = Vector3::from(swing.axis).norm();
-                AXIS_LENGTH.check("axis length", norm)?;
-                SWING_DEG.check("angle_deg", swing.angle_deg)?;
-                PERIOD_S.check("period_s", swing.period_s)?;
-                PERIOD_S.check("growth_s", swing.growth_s).map(drop)
-            }
+            Self::Circle(turn) | Self::Spiral(turn) => turn.check_keys(),
+            Self::Swing(swing) => swing.check_keys(),
         }
     }
 
-    /// Whether it is for orientations; none where it is for both kinds.
-    #[must_use]
-    pub fn is_rotation(&self) -> Option<bool> {
+    fn kind(&self) -> &'static Kind {
+        let [hold, straight, there_and_back, circle, spiral, swing] = &KINDS;
         match self {
-            Self::Hold {} => None,
-            Self::Swing(_) => Some(true),
-            Self::Move { .. } | Self::ThereAndBack(_) | Self::Circle(_) | Self::Spiral(_) => {
-                Some(false)
-            }
+            Self::Hold {} => hold,
+            Self::Move(_) => straight,
+            Self::ThereAndBack(_) => there_and_back,
+            Self::Circle(_) => circle,
+            Self::Spiral(_) => spiral,
+            Self::Swing(_) => swing,
         }
+    }
+
+    /// Checks that it is a motion of what `task` tracks.
+    pub(super) fn fits(&self, task: TaskSpec) -> Result<(), Invalid> {
+        let kind = self.kind();
+        if kind.tasks.contains(&task) {
+            return Ok(());
+        }
+        let fitting = KINDS.iter().filter(|kind| kind.tasks.contains(&task));
+        let words: Vec<_> = fitting.map(|kind| kind.word).collect();
+        let tracked = match task {
+            TaskSpec::Position => "a position",
+            TaskSpec::Orientation => "an orientation",
+        };
+        let allowed = format!("{} for {tracked}", words.join(", "));
+        Err(Invalid::new("reference", kind.word, allowed))
     }
 
     /// Target at time `t_s` from where the level is at the start. A motion that does not
@@ -171,9 +218,9 @@ impl ReferenceSpec {
     fn trajectory(&self) -> Option<Trajectory<f64>> {
         match self {
             Self::Hold {} | Self::ThereAndBack(_) | Self::Swing(_) => None,
-            Self::Move { by_m, duration_s } => Some(Trajectory::Move {
-                by: (*by_m).into(),
-                duration_s: *duration_s,
+            Self::Move(straight) => Some(Trajectory::Move {
+                by: straight.by_m.into(),
+                duration_s: straight.duration_s,
             }),
             Self::Circle(turn) | Self::Spiral(turn) => Some(turn.trajectory()),
         }
