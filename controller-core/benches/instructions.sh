@@ -26,7 +26,7 @@ cd "$(dirname "$0")/../.."
 limit() {
   case "$1" in
     idle) echo 14000 ;;
-    step) echo 23900 ;;
+    step) echo 23500 ;;
   esac
 }
 

@@ -1,7 +1,7 @@
 //! Gain matrices as plain data, by rows, and the one check that all of them pass.
 
 use crate::error::{ConfigError, Gain};
-use crate::joint::DOF;
+use crate::joint::{DOF, in_turn};
 use crate::ranges::GAIN_MAX;
 
 /// A diagonal matrix by rows: the usual form of stiffness and damping.
@@ -21,7 +21,7 @@ pub const fn diagonal<const N: usize>(values: [f64; N]) -> [[f64; N]; N] {
 #[inline(never)]
 pub(crate) fn is_diagonal(matrix: &[[f64; DOF]; DOF]) -> bool {
     let mut diagonal = true;
-    for i in 0..DOF {
+    for i in in_turn::<DOF>(DOF) {
         for j in 0..i {
             diagonal &= matrix[i][j] == 0.0;
         }

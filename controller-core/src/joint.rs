@@ -1,6 +1,8 @@
 //! Joint-space types: the seven joints, their vectors and matrices, and the
 //! state one measurement brings.
 
+use core::hint::black_box;
+
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 use crate::real::Real;
@@ -22,6 +24,14 @@ pub(crate) type Lanes<T> = SVector<T, 4>;
 
 /// A 3 x 3 matrix.
 pub type Matrix3<T> = SMatrix<T, 3, 3>;
+
+/// The first `count` indices, below `N`, in a loop that stays one: the compiler would lay out a
+/// copy of it for each, which takes flash and saves little where it runs seldom.
+#[inline(always)]
+pub(crate) fn in_turn<const N: usize>(count: usize) -> impl Iterator<Item = usize> {
+    // What the compiler cannot see is not laid out several times either.
+    (0..black_box(count)).map(|i| black_box(i).min(N - 1))
+}
 
 /// A matrix of zeros, usable in constants and statics.
 #[must_use]

@@ -2,7 +2,7 @@
 //! the mass matrix and its triangular solves, and the largest eigenvalue of a
 //! symmetric matrix (construction only).
 
-use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::joint::{DOF, JointMatrix, JointVector, in_turn, zeros};
 use crate::real::Real;
 
 /// Repeats a block with the index as a constant: triangular loops inside it get
@@ -46,7 +46,7 @@ impl<T: Real> Cholesky<T> {
     /// Never fails: a pivot below 1e-30 counts as 1e-30, so the factor of a
     /// matrix that is not positive definite is finite but meaningless. The mass
     /// matrix of a validated arm is always positive definite.
-    #[inline]
+    #[inline(never)]
     pub fn update(&mut self, a: &JointMatrix<T>) {
         let Self {
             l,
@@ -153,9 +153,9 @@ impl<T: Real> Cholesky<T> {
         y
     }
 
-    /// L^T x.
+    /// L^T x. Behind a call: it is in the flash once.
     #[must_use]
-    #[inline]
+    #[inline(never)]
     pub fn upper_times(&self, x: &JointVector<T>) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
         for_each_joint!(i, {
@@ -169,16 +169,19 @@ impl<T: Real> Cholesky<T> {
     /// L^-1 B L^-T, for a symmetric B. For construction: small, not fast.
     #[must_use]
     pub fn whiten(&self, b: &JointMatrix<T>) -> JointMatrix<T> {
-        let mut whole = *b;
+        let (mut whole, mut turned) = (*b, *b);
         // (L^-1 B)^T = B L^-T, and once more the same.
         for _ in 0..2 {
-            for j in 0..DOF {
-                let solved = self.solve_lower(&whole.column(j).into_owned());
-                for i in 0..DOF {
-                    whole[(i, j)] = solved[i];
+            for j in in_turn::<DOF>(DOF) {
+                for i in in_turn::<DOF>(DOF) {
+                    let mut value = whole[(i, j)];
+                    for k in 0..i {
+                        value -= self.l[(i, k)] * turned[(j, k)];
+                    }
+                    turned[(j, i)] = value * self.inverse_diagonal[i];
                 }
             }
-            whole.transpose_mut();
+            whole = turned;
         }
         whole
     }
@@ -199,7 +202,7 @@ pub fn largest_eigenpair<T: Real>(a: &mut JointMatrix<T>) -> (T, JointVector<T>)
     let mut vectors = JointMatrix::<T>::identity();
     for _ in 0..SWEEPS {
         let mut changes = false;
-        for p in 0..DOF {
+        for p in in_turn::<DOF>(DOF) {
             for q in p + 1..DOF {
                 changes |= rotate(a, &mut vectors, p, q);
             }
@@ -208,17 +211,13 @@ pub fn largest_eigenpair<T: Real>(a: &mut JointMatrix<T>) -> (T, JointVector<T>)
             break;
         }
     }
-    let mut best = 0;
-    for i in 1..DOF {
-        if a[(i, i)] > a[(best, best)] {
-            best = i;
+    let (mut largest, mut best) = (a[(0, 0)], 0);
+    for i in in_turn::<DOF>(DOF) {
+        if a[(i, i)] > largest {
+            (largest, best) = (a[(i, i)], i);
         }
     }
-    let mut vector: JointVector<T> = zeros();
-    for i in 0..DOF {
-        vector[i] = vectors[(i, best)];
-    }
-    (a[(best, best)], vector)
+    (largest, vectors.column(best.min(DOF - 1)).into_owned())
 }
 
 /// The rotation in the plane (p, q) that makes a\[p, q\] zero; false where it would change nothing.
@@ -239,17 +238,17 @@ fn rotate<T: Real>(
         T::ONE.with_sign_of(theta) / (theta.magnitude() + (theta * theta + T::ONE).square_root());
     let c = T::ONE / (t * t + T::ONE).square_root();
     let s = t * c;
-    for k in 0..DOF {
+    for k in in_turn::<DOF>(DOF) {
         let (x, y) = (a[(k, p)], a[(k, q)]);
         a[(k, p)] = x * c - y * s;
         a[(k, q)] = x * s + y * c;
     }
-    for k in 0..DOF {
+    for k in in_turn::<DOF>(DOF) {
         let (x, y) = (a[(p, k)], a[(q, k)]);
         a[(p, k)] = x * c - y * s;
         a[(q, k)] = x * s + y * c;
     }
-    for k in 0..DOF {
+    for k in in_turn::<DOF>(DOF) {
         let (x, y) = (vectors[(k, p)], vectors[(k, q)]);
         vectors[(k, p)] = x * c - y * s;
         vectors[(k, q)] = x * s + y * c;

@@ -5,9 +5,11 @@ use core::fmt;
 use crate::arm::limits::JointLimits;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
 use crate::arm::pose::{Pose, distortion};
+use crate::joint::{DOF, in_turn};
 use crate::ranges::{
     ANGLE_MAX, DISTORTION_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, MASS_MIN, POSITION_MARGIN,
 };
+use crate::real::Real;
 
 /// Why parameter tables do not make a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,151 +126,160 @@ pub(super) fn second_moment(inertia: &[f64; 6]) -> nalgebra::Matrix3<f64> {
 
 /// Checks every number of the tables.
 pub(super) fn validate(arm: &ArmParameters) -> Result<(), ArmError> {
-    pose(&arm.base, ["base.rotation", "base.shift"])?;
-    pose(&arm.flange, ["flange.rotation", "flange.shift"])?;
-    finite(0, "gravity", &arm.gravity)?;
+    let mut checks = Checks::NONE;
+    checks.pose(&arm.base, ["base.rotation", "base.shift"]);
+    checks.pose(&arm.flange, ["flange.rotation", "flange.shift"]);
+    checks.finite("gravity", &arm.gravity);
     let [x, y, z] = arm.gravity;
-    let gravity = libm::sqrt(x * x + y * y + z * z);
-    within(0, "gravity [m/s2]", gravity, [0.0, GRAVITY_MAX])?;
-    (1..)
-        .zip(&arm.links)
-        .try_for_each(|(number, link)| joint(number, link))?;
-    match &arm.limits {
-        Some(limits) => joint_limits(limits),
-        None => Ok(()),
+    let gravity = (x * x + y * y + z * z).square_root();
+    checks.within("gravity [m/s2]", gravity, [0.0, GRAVITY_MAX]);
+    for i in in_turn::<DOF>(DOF) {
+        checks.link = i + 1;
+        checks.joint(&arm.links[i]);
     }
+    if let Some(limits) = &arm.limits {
+        checks.joint_limits(limits);
+    }
+    checks.result()
 }
 
-fn joint_limits(limits: &JointLimits) -> Result<(), ArmError> {
-    for (parameter, values) in [
-        ("limits.acceleration [rad/s2]", &limits.acceleration),
-        ("limits.braking [rad/s2]", &limits.braking),
-        ("limits.speed_gain [1/s]", &limits.speed_gain),
-    ] {
-        for (number, &value) in (1..).zip(values) {
-            within(number, parameter, value, JOINT_LIMIT_RANGE)?;
+/// Numbers one after the other: of those that cannot be the first is kept.
+pub(super) struct Checks {
+    first: Option<ArmError>,
+    /// Link (1..=7) of the numbers, 0 for the arm as a whole.
+    link: usize,
+}
+
+impl Checks {
+    /// Of the arm as a whole, none so far.
+    pub const NONE: Self = Self {
+        first: None,
+        link: 0,
+    };
+
+    /// Ok where all of them can be.
+    pub fn result(&self) -> Result<(), ArmError> {
+        self.first.map_or(Ok(()), Err)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn add(&mut self, error: ArmError) {
+        self.first = self.first.or(Some(error));
+    }
+
+    fn joint_limits(&mut self, limits: &JointLimits) {
+        for i in in_turn::<DOF>(DOF) {
+            self.link = i + 1;
+            let [alpha, braking, gain] =
+                [&limits.acceleration, &limits.braking, &limits.speed_gain].map(|of| of[i]);
+            self.within("limits.acceleration [rad/s2]", alpha, JOINT_LIMIT_RANGE);
+            self.within("limits.braking [rad/s2]", braking, JOINT_LIMIT_RANGE);
+            self.within("limits.speed_gain [1/s]", gain, JOINT_LIMIT_RANGE);
+        }
+        self.link = 0;
+        let gain = limits.position_gain;
+        self.within("limits.position_gain [1/s]", gain, JOINT_LIMIT_RANGE);
+        let allowed = [0.0, POSITION_MARGIN];
+        self.within("limits.margin [rad]", limits.margin, allowed);
+        self.within("limits.speed_share", limits.speed_share, [0.1, 1.0]);
+    }
+
+    /// Whether a pose of the arm has the axes of a frame.
+    pub fn pose(&mut self, pose: &Pose, [rotation, shift]: [&'static str; 2]) {
+        self.finite(shift, &pose.shift);
+        self.finite(rotation, pose.rotation.as_flattened());
+        let parameter = "distortion of a rotation of base, flange or tool";
+        let value = distortion(&pose.rotation);
+        self.within(parameter, value, [0.0, DISTORTION_MAX]);
+    }
+
+    fn joint(&mut self, link: &LinkParameters) {
+        self.finite("a", &[link.a]);
+        self.finite("alpha", &[link.alpha]);
+        self.finite("d", &[link.d]);
+        self.finite("angle_offset", &[link.angle_offset]);
+        self.finite("com", &link.com);
+        self.finite("inertia", &link.inertia);
+        self.positive("mass", link.mass);
+        self.positive("speed_limit", link.speed_limit);
+        self.positive("torque_limit", link.torque_limit);
+        self.positive("torque_rate_limit", link.torque_rate_limit);
+        self.positive("brake_rate_limit", link.brake_rate_limit);
+        self.positive("friction.smoothing", link.friction.smoothing);
+        self.within("mass [kg]", link.mass, [MASS_MIN, f64::INFINITY]);
+        self.not_negative("rotor_inertia [kg m2]", link.rotor_inertia);
+        self.not_negative("friction.coulomb [Nm]", link.friction.coulomb);
+        self.not_negative("friction.viscous [Nms/rad]", link.friction.viscous);
+        let [min, max] = link.position_range;
+        // Positions are believed up to a margin beyond the range.
+        let farthest = ANGLE_MAX - POSITION_MARGIN;
+        let [least, most] = [-farthest, farthest].map(|end| end - link.angle_offset);
+        self.within("least position [rad]", min, [least, most]);
+        self.within("greatest position [rad]", max, [min, most]);
+        if let Some(approach) = &link.end_approach {
+            self.finite("end_approach.ends", &approach.ends);
+            self.not_negative("end_approach.margin", approach.margin);
+            self.not_negative("end_approach.deceleration", approach.deceleration);
+        }
+        self.possible(&link.inertia);
+    }
+
+    /// Whether a body can have this inertia.
+    pub fn possible(&mut self, inertia: &[f64; 6]) {
+        let (link, value) = (self.link, smallest_minor(&second_moment(inertia)));
+        // Identified bodies sit on the border of the feasible set: allow the
+        // rounding of their printed numbers.
+        if value < -1e-9 {
+            self.add(ArmError::ImpossibleInertia { link, value });
         }
     }
-    let (gain, [least, most]) = (limits.position_gain, JOINT_LIMIT_RANGE);
-    within(0, "limits.position_gain [1/s]", gain, [least, most])?;
-    within(
-        0,
-        "limits.margin [rad]",
-        limits.margin,
-        [0.0, POSITION_MARGIN],
-    )?;
-    within(0, "limits.speed_share", limits.speed_share, [0.1, 1.0])
-}
 
-/// Whether a pose of the arm has the axes of a frame.
-pub(super) fn pose(pose: &Pose, [rotation, shift]: [&'static str; 2]) -> Result<(), ArmError> {
-    finite(0, shift, &pose.shift)?;
-    finite(0, rotation, pose.rotation.as_flattened())?;
-    let allowed = [0.0, DISTORTION_MAX];
-    within(
-        0,
-        "distortion of a rotation of base, flange or tool",
-        distortion(&pose.rotation),
-        allowed,
-    )
-}
-
-fn joint(number: usize, link: &LinkParameters) -> Result<(), ArmError> {
-    for (parameter, value) in [
-        ("a", link.a),
-        ("alpha", link.alpha),
-        ("d", link.d),
-        ("angle_offset", link.angle_offset),
-    ] {
-        finite(number, parameter, &[value])?;
-    }
-    finite(number, "com", &link.com)?;
-    finite(number, "inertia", &link.inertia)?;
-    for (parameter, value) in [
-        ("mass", link.mass),
-        ("speed_limit", link.speed_limit),
-        ("torque_limit", link.torque_limit),
-        ("torque_rate_limit", link.torque_rate_limit),
-        ("brake_rate_limit", link.brake_rate_limit),
-        ("friction.smoothing", link.friction.smoothing),
-    ] {
-        finite(number, parameter, &[value])?;
-        if value <= 0.0 {
-            return Err(ArmError::NotPositive {
-                link: number,
+    #[inline(never)]
+    pub fn finite(&mut self, parameter: &'static str, values: &[f64]) {
+        let link = self.link;
+        if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+            self.add(ArmError::NonFinite {
+                link,
                 parameter,
                 value,
             });
         }
     }
-    let unbounded = f64::INFINITY;
-    within(number, "mass [kg]", link.mass, [MASS_MIN, unbounded])?;
-    for (parameter, value) in [
-        ("rotor_inertia [kg m2]", link.rotor_inertia),
-        ("friction.coulomb [Nm]", link.friction.coulomb),
-        ("friction.viscous [Nms/rad]", link.friction.viscous),
-    ] {
-        finite(number, parameter, &[value])?;
-        within(number, parameter, value, [0.0, unbounded])?;
-    }
-    let [min, max] = link.position_range;
-    // Positions are believed up to a margin beyond the range.
-    let farthest = ANGLE_MAX - POSITION_MARGIN;
-    let allowed = [-farthest - link.angle_offset, farthest - link.angle_offset];
-    within(number, "least position [rad]", min, allowed)?;
-    within(number, "greatest position [rad]", max, [min, allowed[1]])?;
-    if let Some(approach) = &link.end_approach {
-        finite(number, "end_approach.ends", &approach.ends)?;
-        let numbers = [approach.margin, approach.deceleration];
-        for (parameter, value) in ["end_approach.margin", "end_approach.deceleration"]
-            .into_iter()
-            .zip(numbers)
-        {
-            finite(number, parameter, &[value])?;
-            within(number, parameter, value, [0.0, unbounded])?;
+
+    #[inline(never)]
+    fn positive(&mut self, parameter: &'static str, value: f64) {
+        let link = self.link;
+        self.finite(parameter, &[value]);
+        if value <= 0.0 {
+            self.add(ArmError::NotPositive {
+                link,
+                parameter,
+                value,
+            });
         }
     }
-    possible(number, &link.inertia)
-}
 
-/// Whether a body can have this inertia.
-pub(super) fn possible(link: usize, inertia: &[f64; 6]) -> Result<(), ArmError> {
-    let value = smallest_minor(&second_moment(inertia));
-    // Identified bodies sit on the border of the feasible set: allow the
-    // rounding of their printed numbers.
-    if value < -1e-9 {
-        return Err(ArmError::ImpossibleInertia { link, value });
+    #[inline(never)]
+    fn not_negative(&mut self, parameter: &'static str, value: f64) {
+        self.finite(parameter, &[value]);
+        self.within(parameter, value, [0.0, f64::INFINITY]);
     }
-    Ok(())
-}
 
-pub(super) fn finite(link: usize, parameter: &'static str, values: &[f64]) -> Result<(), ArmError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(ArmError::NonFinite {
-            link,
-            parameter,
-            value,
-        }),
-        None => Ok(()),
+    #[inline(never)]
+    pub fn within(&mut self, parameter: &'static str, value: f64, allowed: [f64; 2]) {
+        let (link, [least, most]) = (self.link, allowed);
+        // False for NaN as well.
+        let can_be = value >= least && value <= most;
+        if !can_be {
+            self.add(ArmError::OutOfRange {
+                link,
+                parameter,
+                value,
+                allowed,
+            });
+        }
     }
-}
-
-pub(super) fn within(
-    link: usize,
-    parameter: &'static str,
-    value: f64,
-    allowed: [f64; 2],
-) -> Result<(), ArmError> {
-    // False for NaN as well.
-    if value >= allowed[0] && value <= allowed[1] {
-        return Ok(());
-    }
-    Err(ArmError::OutOfRange {
-        link,
-        parameter,
-        value,
-        allowed,
-    })
 }
 
 /// Smallest principal minor, each order normalised by the trace: not negative

@@ -141,6 +141,20 @@ impl<T: Real> Kinematics<T> {
         }
     }
 
+    /// Axis of joint `i`, counted from 0: a unit vector.
+    #[inline(always)]
+    pub(crate) fn joint_axis(&self, i: usize) -> Vector3<T> {
+        let [x, y, z] = &self.axis;
+        Vector3::from([x[i], y[i], z[i]])
+    }
+
+    /// A place on the axis of joint `i`, counted from 0 \[m\].
+    #[inline(always)]
+    pub(crate) fn joint_place(&self, i: usize) -> Vector3<T> {
+        let [x, y, z] = &self.joint_origin;
+        Vector3::from([x[i], y[i], z[i]])
+    }
+
     /// J and dJ/dt of a point whose motion is `motion`: columns z x (x - o) and
     /// dz x (x - o) + z x (dx - do) for the joints up to its link, else zero.
     #[must_use]

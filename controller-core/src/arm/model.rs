@@ -4,7 +4,7 @@ use crate::arm::check::{ArmError, second_moment, validate};
 use crate::arm::exchange::AxisExchange;
 use crate::arm::link::LinkPoint;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
-use crate::joint::{DOF, JointVector, Lanes, Padded, Vector3, padded};
+use crate::joint::{DOF, JointVector, Lanes, Padded, Vector3, in_turn, padded, zeros};
 use crate::real::Real;
 
 /// One link as the algorithms read it.
@@ -64,10 +64,31 @@ impl<T: Real> ArmModel<T> {
     /// Behind a call, so that the model is built in the place of the result.
     #[inline(never)]
     fn prepared(parameters: &ArmParameters) -> Self {
-        let column = |pick: fn(&LinkParameters) -> f64| {
-            let mut values = parameters.links.iter().map(pick);
-            JointVector::from_fn(|_, _| T::from_f64(values.next().unwrap_or(0.0)))
-        };
+        let mut columns: [JointVector<T>; 8] = [zeros(); 8];
+        for i in in_turn::<DOF>(DOF) {
+            let link = &parameters.links[i];
+            let [least, greatest] = link.position_range;
+            let numbers = [
+                -link.angle_offset,
+                link.rotor_inertia,
+                least,
+                greatest,
+                link.speed_limit,
+                link.torque_limit,
+                link.torque_rate_limit,
+                link.brake_rate_limit,
+            ];
+            for (column, number) in columns.iter_mut().zip(numbers) {
+                column[i] = T::from_f64(number);
+            }
+        }
+        let [zero_angle, rotor_inertia, least, greatest, columns @ ..] = columns;
+        let [
+            speed_limit,
+            torque_limit,
+            torque_rate_limit,
+            brake_rate_limit,
+        ] = columns;
         // nalgebra takes columns.
         let base = nalgebra::Matrix3::from(parameters.base.rotation).transpose();
         Self {
@@ -85,16 +106,13 @@ impl<T: Real> ArmModel<T> {
             gravity: base
                 .tr_mul(&nalgebra::Vector3::from(parameters.gravity))
                 .map(T::from_f64),
-            zero_angle: padded(&column(|link| -link.angle_offset)),
-            rotor_inertia: column(|link| link.rotor_inertia),
-            position_range: [
-                column(|link| link.position_range[0]),
-                column(|link| link.position_range[1]),
-            ],
-            speed_limit: column(|link| link.speed_limit),
-            torque_limit: column(|link| link.torque_limit),
-            torque_rate_limit: column(|link| link.torque_rate_limit),
-            brake_rate_limit: column(|link| link.brake_rate_limit),
+            zero_angle: padded(&zero_angle),
+            rotor_inertia,
+            position_range: [least, greatest],
+            speed_limit,
+            torque_limit,
+            torque_rate_limit,
+            brake_rate_limit,
             damping_postures: parameters.damping_postures,
         }
     }
@@ -162,8 +180,8 @@ impl<T: Real> LinkModel<T> {
         );
         let com =
             turn * nalgebra::Vector3::from(link.com) + nalgebra::Vector3::new(link.a, 0.0, link.d);
-        let s = turn * second_moment(&link.inertia) * turn.transpose()
-            + com * com.transpose() * link.mass;
+        let turned = product(&turn, &second_moment(&link.inertia));
+        let s = product(&turned, &turn.transpose()) + com * com.transpose() * link.mass;
         let h = com * link.mass;
         Self {
             a: T::from_f64(link.a),
@@ -191,6 +209,12 @@ impl<T: Real> LinkModel<T> {
             moments: [Lanes::from([zero; 4]); 4],
         }
     }
+}
+
+/// a b. Behind a call: it is in the flash once.
+#[inline(never)]
+fn product(a: &nalgebra::Matrix3<f64>, b: &nalgebra::Matrix3<f64>) -> nalgebra::Matrix3<f64> {
+    a * b
 }
 
 fn vector<T: Real>(values: [f64; 3]) -> Vector3<T> {

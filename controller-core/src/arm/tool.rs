@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arm::check::{self, ArmError};
+use crate::arm::check::{ArmError, Checks};
 use crate::arm::link::{Link, LinkFrame, LinkPoint};
 use crate::arm::parameters::ArmParameters;
 use crate::arm::pose::Pose;
@@ -28,17 +28,18 @@ impl Tool {
     /// # Errors
     /// [`ArmError`] names the first number that cannot be, with link 0.
     pub fn validate(&self) -> Result<(), ArmError> {
-        let unbounded = f64::INFINITY;
-        check::pose(&self.pose, ["tool.rotation", "tool.shift"])?;
-        check::finite(0, "tool.mass", &[self.mass])?;
-        check::finite(0, "tool.com", &self.com)?;
-        check::finite(0, "tool.inertia", &self.inertia)?;
-        check::within(0, "tool.mass [kg]", self.mass, [0.0, unbounded])?;
-        if self.mass == 0.0 && self.inertia == [0.0; 6] {
-            return Ok(());
+        let mut checks = Checks::NONE;
+        checks.pose(&self.pose, ["tool.rotation", "tool.shift"]);
+        checks.finite("tool.mass", &[self.mass]);
+        checks.finite("tool.com", &self.com);
+        checks.finite("tool.inertia", &self.inertia);
+        checks.within("tool.mass [kg]", self.mass, [0.0, f64::INFINITY]);
+        let is_frame = self.mass == 0.0 && self.inertia == [0.0; 6];
+        if !is_frame {
+            checks.within("tool.mass [kg]", self.mass, [MASS_MIN, f64::INFINITY]);
+            checks.possible(&self.inertia);
         }
-        check::within(0, "tool.mass [kg]", self.mass, [MASS_MIN, unbounded])?;
-        check::possible(0, &self.inertia)
+        checks.result()
     }
 }
 

@@ -29,9 +29,7 @@ impl<T: Real> Controller<T> {
             return Err(ConfigError::IntegratedPosture);
         }
         Self::made(arm, config, |model, fastest_mode| {
-            let limits = joint_limits(arm, model, config.cycle_s, config.dead_cycles);
-            let bounds = JointBounds::new(model, &limits);
-            Self::converted(model, config, fastest_mode, within_limits(), &bounds)
+            Self::within_limits(arm, model, config, fastest_mode)
         })
     }
 
@@ -61,6 +59,19 @@ impl<T: Real> Controller<T> {
             },
             Err(error) => Err(ConfigError::Arm(*error)),
         }
+    }
+
+    /// The law within limits, without a check.
+    #[inline(always)]
+    pub(super) fn within_limits(
+        arm: &ArmParameters,
+        model: &ArmModel<T>,
+        config: &ControllerConfig,
+        fastest_mode: DampingRate,
+    ) -> Self {
+        let limits = joint_limits(arm, model, config.cycle_s, config.dead_cycles);
+        let bounds = JointBounds::new(model, &limits);
+        Self::converted(model, config, fastest_mode, within_limits(), &bounds)
     }
 
     /// The exact law, without a check.

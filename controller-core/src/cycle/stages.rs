@@ -352,7 +352,7 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let mut null_force = controller.compliance.force(
+    let null_force = controller.compliance.force(
         &data.dynamics,
         &data.rows,
         &data.motion,
@@ -371,9 +371,6 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         residual: &data.observer.residual,
         posture: &data.posture,
     });
-    if data.spectrum.released.any() {
-        null_force += data.dynamics.mass_matrix * data.way_out.acceleration;
-    }
     data.wish.update(&Ask {
         levels: &controller.levels,
         bounds: &controller.bounds,
@@ -382,6 +379,7 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         rows: &data.rows,
         spectrum: &data.spectrum,
         motion: &data.whitened_motion,
+        way_out: &data.way_out,
         null_force: &null_force,
         residual: &data.observer.residual,
     });

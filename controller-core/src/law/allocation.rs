@@ -44,8 +44,8 @@ impl<T: Real> Allocation<T> {
     }
 
     /// Cuts each joint to its limit, and to its rate from the torque of the last cycle. A
-    /// demand that is not finite leaves that torque as it is.
-    #[inline]
+    /// demand that is not finite leaves that torque as it is. Behind a call: it is in the flash once.
+    #[inline(never)]
     pub fn update(&mut self, demand: &TorqueDemand<T>, limits: &TorqueLimits<'_, T>) {
         self.finite = all_finite(&demand.0);
         (self.saturated, self.rate_limited) = (IndexSet::NONE, IndexSet::NONE);

@@ -12,6 +12,7 @@
 //! is the same as larger gains and every pair has a longest cycle.
 
 use crate::error::ConfigError;
+use crate::joint::in_turn;
 use crate::ranges::DEAD_CYCLES_MAX;
 use crate::real::Real;
 use crate::task::Task;
@@ -108,15 +109,11 @@ fn is_stable(stiffness: f64, damping: f64, cycle_s: f64, dead_cycles: u8) -> boo
     let (by_rate, by_place) = (cycle_s * damping, 0.5 * cycle_s * cycle_s * stiffness);
     let mut p = [0.0; COEFFICIENTS];
     let mut degree = (usize::from(dead_cycles) + 2).min(COEFFICIENTS - 1);
-    let leading = [(degree, 1.0), (degree - 1, -2.0), (degree - 2, 1.0)];
-    for (index, value) in leading
-        .into_iter()
-        .chain([(1, by_rate + by_place), (0, by_place - by_rate)])
-    {
-        if let Some(entry) = p.get_mut(index) {
-            *entry += value;
-        }
-    }
+    p[degree] += 1.0;
+    p[degree - 1] -= 2.0;
+    p[degree - 2] += 1.0;
+    p[1] += by_rate + by_place;
+    p[0] += by_place - by_rate;
     while degree > 0 {
         let (Some(&last), Some(&first)) = (p.get(degree), p.first()) else {
             return false;
@@ -126,9 +123,9 @@ fn is_stable(stiffness: f64, damping: f64, cycle_s: f64, dead_cycles: u8) -> boo
             return false;
         }
         let (ratio, before) = (first / last, p);
-        for (index, value) in p.iter_mut().enumerate().take(degree) {
+        for index in in_turn::<COEFFICIENTS>(degree) {
             let of = |index: usize| before.get(index).copied().unwrap_or(0.0);
-            *value = of(index + 1) - ratio * of(degree - 1 - index);
+            p[index] = of(index + 1) - ratio * of(degree - 1 - index);
         }
         degree -= 1;
     }

@@ -15,6 +15,7 @@
 
 pub mod bounds;
 mod eigen;
+pub mod memory;
 pub mod motion;
 pub mod projection;
 mod rule;
@@ -23,4 +24,4 @@ mod tableau;
 pub mod way_out;
 pub mod wish;
 
-pub use rule::joint_limits;
+pub use rule::{joint_limits, own_joint_limits};

@@ -4,7 +4,7 @@ use super::motion::MotionSplit;
 use crate::arm::dynamics::Dynamics;
 use crate::error::{ConfigError, Gain};
 use crate::gain;
-use crate::joint::{DOF, JointMatrix, JointVector, zeros};
+use crate::joint::{DOF, JointMatrix, JointVector, in_turn, zeros};
 use crate::ranges::GAIN_MAX;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
@@ -122,8 +122,9 @@ impl<T: Real> Compliance<T> {
     }
 
     /// f \[Nm\] of [`Control`](super::control::Control), of the law within limits: into one vector
-    /// without any of its terms as a vector of its own, and therefore rounded otherwise.
-    #[inline]
+    /// without any of its terms as a vector of its own, and therefore rounded otherwise. Behind a
+    /// call: with the stage around it its numbers do not fit into registers.
+    #[inline(never)]
     pub(crate) fn force(
         &self,
         dynamics: &Dynamics<T>,
@@ -174,7 +175,11 @@ fn add_product<T: Real>(
 
 /// Behind a call: it is in the flash once.
 #[inline(never)]
-fn add_coupled<T: Real>(sum: &mut JointVector<T>, matrix: &JointMatrix<T>, x: &JointVector<T>) {
+pub(crate) fn add_coupled<T: Real>(
+    sum: &mut JointVector<T>,
+    matrix: &JointMatrix<T>,
+    x: &JointVector<T>,
+) {
     for j in 0..DOF {
         for i in 0..DOF {
             sum[i] += matrix[(i, j)] * x[j];
@@ -197,8 +202,8 @@ impl<T: Real> Damping<T> {
 #[inline(never)]
 pub(crate) fn matrix<T: Real>(rows: &[[f64; DOF]; DOF]) -> JointMatrix<T> {
     let mut matrix = zeros();
-    for i in 0..DOF {
-        for j in 0..DOF {
+    for i in in_turn::<DOF>(DOF) {
+        for j in in_turn::<DOF>(DOF) {
             matrix[(i, j)] = T::from_f64(rows[i][j]);
         }
     }

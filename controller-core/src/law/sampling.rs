@@ -9,9 +9,9 @@
 //! that contain, for the damping of each single joint and for ordinary dampings, the worst
 //! one found by a search over the whole joint range; without them the search runs for the
 //! very damping when a controller is made (`search`). It takes at most some 7,000 mass
-//! matrices: 40 ms on a workstation, on a Cortex-M7 0.3 thousand million instructions in `f64`
-//! and 0.2 in `f32`, counted by QEMU: 0.8 and 0.6 s at 400 MHz and one per clock cycle, at most
-//! 2.3 and 1.1 s by the borders of docs/timing.md. A table that must start faster brings postures.
+//! matrices: 40 ms on a workstation, on a Cortex-M7 0.5 thousand million instructions in `f64`
+//! and 0.4 in `f32`, counted by QEMU: 1.3 and 1.0 s at 400 MHz and one per clock cycle, at most
+//! 3.9 and 2.0 s by the borders of docs/timing.md. A table that must start faster brings postures.
 //!
 //! A search proves nothing. What other searches find is above the sampling bound by 0.3 % at
 //! most for the arms of the crate `arms`, bare and with 2 kg (`tests/tests/damping_search.rs`).
@@ -29,8 +29,10 @@ pub(crate) use search::ranges as posture_ranges;
 
 /// What h lambda must stay below with `dead_cycles` cycles between measurement
 /// and torque: 2 cos(d pi / (2 d + 1)), where z^(d+1) - z^d + h lambda = 0 leaves
-/// the unit circle. 2 without dead time, 1 with one cycle, 0.618 with two.
+/// the unit circle. 2 without dead time, 1 with one cycle, 0.618 with two. Behind a call: it is in
+/// the flash once.
 #[must_use]
+#[inline(never)]
 pub fn bound(dead_cycles: u8) -> f64 {
     let d = f64::from(dead_cycles);
     let (_, cosine) = (d * core::f64::consts::PI / (2.0 * d + 1.0)).sine_cosine();
@@ -45,10 +47,7 @@ pub fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> Dam
     }
     let mut fastest = mode::NONE;
     for posture in arm.damping_postures {
-        let mode = mode_at(arm, damping, *posture);
-        if mode.rate > fastest.rate {
-            fastest = mode;
-        }
+        fastest.raise(arm, damping, posture);
     }
     fastest
 }

@@ -2,7 +2,7 @@
 
 use super::level_limits::LevelLimits;
 use super::set::{Task, Tracked};
-use crate::joint::{Matrix3, Vector3};
+use crate::joint::{Matrix3, Vector3, in_turn};
 use crate::ranges::ORIENTATION_LENGTH;
 use crate::real::Real;
 
@@ -141,8 +141,8 @@ pub(crate) fn length(task: &Task) -> f64 {
 /// K_d^-1 K_p on the controlled axes, zero elsewhere.
 fn approach(task: &Task) -> Matrix3<f64> {
     let (mut damping, mut speeds) = (Matrix3::identity(), Matrix3::zeros());
-    for row in 0..3 {
-        for column in 0..3 {
+    for row in in_turn::<3>(3) {
+        for column in in_turn::<3>(3) {
             if task.axes.contains(row) && task.axes.contains(column) {
                 damping[(row, column)] = task.gains.damping[row][column];
                 speeds[(row, column)] = task.gains.stiffness[row][column];
@@ -150,19 +150,19 @@ fn approach(task: &Task) -> Matrix3<f64> {
         }
     }
     // Gauss and Jordan; K_d is positive definite and needs no other pivots.
-    for pivot in 0..3 {
-        for row in 0..3 {
+    for pivot in in_turn::<3>(3) {
+        for row in in_turn::<3>(3) {
             if row != pivot {
                 let share = damping[(row, pivot)] / damping[(pivot, pivot)];
-                for column in 0..3 {
+                for column in in_turn::<3>(3) {
                     damping[(row, column)] -= share * damping[(pivot, column)];
                     speeds[(row, column)] -= share * speeds[(pivot, column)];
                 }
             }
         }
     }
-    for row in 0..3 {
-        for column in 0..3 {
+    for row in in_turn::<3>(3) {
+        for column in in_turn::<3>(3) {
             speeds[(row, column)] /= damping[(row, row)];
         }
     }

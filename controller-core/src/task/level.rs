@@ -6,7 +6,7 @@ use super::set::{Task, TaskGains, TaskSet, Tracked};
 use super::{Axes, Target};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{ArmModel, Link, LinkFrame};
-use crate::joint::{Matrix3, Vector3, zeros};
+use crate::joint::{Matrix3, Vector3, in_turn, zeros};
 use crate::ranges::{MAX_LEVELS, REACH_MARGIN_M};
 use crate::real::Real;
 
@@ -137,10 +137,10 @@ fn on_axes<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> Matrix3<T> {
 #[inline(never)]
 fn by_rows<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> [[T; 3]; 3] {
     let mut rows = [[T::ZERO; 3]; 3];
-    let used = || (0..3).filter(|&axis| axes.contains(axis));
-    for (row, i) in rows.iter_mut().zip(used()) {
-        for (entry, j) in row.iter_mut().zip(used()) {
-            *entry = T::from_f64(gain[i][j]);
+    let used = || in_turn::<3>(3).filter(|&axis| axes.contains(axis));
+    for (row, i) in used().enumerate() {
+        for (column, j) in used().enumerate() {
+            rows[row % 3][column % 3] = T::from_f64(gain[i][j]);
         }
     }
     rows

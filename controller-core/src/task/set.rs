@@ -136,14 +136,15 @@ impl TaskSet {
         const UNUSED: Task =
             Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(0.0, 0.0));
         let count = Self::count(tasks)?;
-        let mut tasks = tasks.iter();
         Ok(Self {
-            tasks: core::array::from_fn(|_| *tasks.next().unwrap_or(&UNUSED)),
+            tasks: core::array::from_fn(|level| *tasks.get(level).unwrap_or(&UNUSED)),
             count,
         })
     }
 
-    /// Number of levels, where it and their rows are as they must be.
+    /// Number of levels, where it and their rows are as they must be. Behind a call: it is in the
+    /// flash once.
+    #[inline(never)]
     fn count(tasks: &[Task]) -> Result<usize, ConfigError> {
         let levels = tasks.len();
         if !(1..=MAX_LEVELS).contains(&levels) {

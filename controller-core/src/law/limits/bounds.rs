@@ -13,7 +13,7 @@
 //! they contradict each other each gives way to the other.
 
 use crate::arm::{ArmModel, JointLimits};
-use crate::joint::{DOF, JointState, JointVector, zeros};
+use crate::joint::{DOF, JointState, JointVector, in_turn, zeros};
 use crate::real::Real;
 
 /// What the bounds are made from, in the precision of the controller.
@@ -54,19 +54,23 @@ impl<T: Real> JointBounds<T> {
 
     pub(crate) fn new(arm: &ArmModel<T>, limits: &JointLimits) -> Self {
         let k = limits.position_gain;
-        let of = |values: &[f64; DOF]| JointVector::from(values.map(T::from_f64));
         let [least, greatest] = arm.position_range();
-        let margin = JointVector::from([T::from_f64(limits.margin); DOF]);
-        Self {
-            ends: [least + margin, greatest - margin],
-            speed: arm.speed_limit() * T::from_f64(limits.speed_share),
-            acceleration: of(&limits.acceleration),
-            inverse_acceleration: of(&limits.acceleration.map(|alpha| 1.0 / alpha)),
-            braking: of(&limits.braking),
-            speed_gain: of(&limits.speed_gain),
-            position_gain: T::from_f64(k),
-            turn: of(&limits.braking.map(|a| a / (2.0 * k * k))),
+        let margin = T::from_f64(limits.margin);
+        let speed_share = T::from_f64(limits.speed_share);
+        let mut bounds = Self::none();
+        bounds.position_gain = T::from_f64(k);
+        for i in in_turn::<DOF>(DOF) {
+            let (alpha, braking) = (limits.acceleration[i], limits.braking[i]);
+            bounds.ends[0][i] = least[i] + margin;
+            bounds.ends[1][i] = greatest[i] - margin;
+            bounds.speed[i] = arm.speed_limit()[i] * speed_share;
+            bounds.acceleration[i] = T::from_f64(alpha);
+            bounds.inverse_acceleration[i] = T::from_f64(1.0 / alpha);
+            bounds.braking[i] = T::from_f64(braking);
+            bounds.speed_gain[i] = T::from_f64(limits.speed_gain[i]);
+            bounds.turn[i] = T::from_f64(braking / (2.0 * k * k));
         }
+        bounds
     }
 
     /// How far a joint at `q` \[rad\] is from the ends of its range less the margin \[rad\]: way

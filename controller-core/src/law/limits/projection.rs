@@ -44,7 +44,7 @@ pub struct Projection<T: Real> {
     /// n^T M (a - a*) \[W\]: what the bounds do on the null-space motion; above 0 they drive it.
     pub power: T,
     /// dev \[m/s2\]: the disturbance smoothed, remembered from cycle to cycle.
-    smoothed: [T; MAX_LEVELS],
+    pub(super) smoothed: [T; MAX_LEVELS],
     /// Of the cycle alone; here, because on the stack it would have to be cleared first.
     search: Search<T>,
 }

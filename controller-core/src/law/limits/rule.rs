@@ -26,7 +26,7 @@
 
 use crate::arm::limits::JointLimits;
 use crate::arm::{ArmModel, ArmParameters, LinkParameters};
-use crate::joint::{DOF, zeros};
+use crate::joint::{DOF, in_turn, zeros};
 use crate::law::sampling::{posture_ranges, set_mass_matrix};
 use crate::real::Real;
 
@@ -60,32 +60,35 @@ const SPEED_SHARE: f64 = 0.9;
 /// h kv stays below this, in cycles until a torque acts.
 const SPEED_GAIN_BOUND: f64 = 0.4;
 
-/// What an arm says of itself, or else the rule; no faster than a cycle of `cycle_s` \[s\] and
-/// `dead_cycles` carry.
+/// What an arm says of itself, or else the rule, whatever the cycle.
+pub fn own_joint_limits<T: Real>(parameters: &ArmParameters, model: &ArmModel<T>) -> JointLimits {
+    match parameters.limits {
+        Some(limits) => limits,
+        None => by_rule(parameters, &largest_inertias(model)),
+    }
+}
+
+/// The same, no faster than a cycle of `cycle_s` \[s\] and `dead_cycles` carry.
 pub fn joint_limits<T: Real>(
     parameters: &ArmParameters,
     model: &ArmModel<T>,
     cycle_s: f64,
     dead_cycles: u8,
 ) -> JointLimits {
-    let mut limits = match parameters.limits {
-        Some(limits) => limits,
-        None => by_rule(parameters, &largest_inertias(model)),
-    };
+    let mut limits = own_joint_limits(parameters, model);
     let fastest = SPEED_GAIN_BOUND / (f64::from(dead_cycles + 1) * cycle_s);
     let mut slowest = fastest;
-    for (gain, alpha) in limits.speed_gain.iter_mut().zip(&mut limits.acceleration) {
-        let share = (fastest / *gain).min(1.0);
-        *gain *= share;
-        *alpha *= share;
-        slowest = slowest.min(*gain);
+    for i in in_turn::<DOF>(DOF) {
+        let share = (fastest / limits.speed_gain[i]).min(1.0);
+        limits.speed_gain[i] *= share;
+        limits.acceleration[i] *= share;
+        slowest = slowest.min(limits.speed_gain[i]);
     }
     limits.position_gain = limits.position_gain.min(POSITION_SHARE * slowest);
-    for (braking, alpha) in limits.braking.iter_mut().zip(&limits.acceleration) {
-        *braking = braking.min(BRAKING_SHARE * alpha);
-    }
-    for (i, link) in parameters.links.iter().enumerate() {
-        limits.braking[i] = limits.braking[i].min(approach_braking(link, &limits));
+    for i in in_turn::<DOF>(DOF) {
+        let most = approach_braking(&parameters.links[i], &limits);
+        let most = most.min(BRAKING_SHARE * limits.acceleration[i]);
+        limits.braking[i] = limits.braking[i].min(most);
     }
     limits
 }
@@ -113,7 +116,7 @@ fn approach_braking(link: &LinkParameters, limits: &JointLimits) -> f64 {
         let speed = limits.speed_share * left;
         let shortest = speed / limits.position_gain;
         if way > shortest {
-            let root = libm::sqrt(way * way - shortest * shortest);
+            let root = (way * way - shortest * shortest).square_root();
             most = most.min(speed * speed / (way + root));
         }
     }
@@ -129,18 +132,19 @@ fn by_rule(parameters: &ArmParameters, inertias: &[f64; DOF]) -> JointLimits {
         margin: MARGIN,
         speed_share: SPEED_SHARE,
     };
-    let joints = || parameters.links.iter().zip(inertias);
+    let links = &parameters.links;
     let mut calm = 0.0f64;
-    for (link, &inertia) in joints() {
-        calm = calm.max(shaking(link, inertia, SPEED_GAIN_MIN));
+    for i in in_turn::<DOF>(DOF) {
+        calm = calm.max(shaking(&links[i], inertias[i], SPEED_GAIN_MIN));
     }
     calm *= LIGHT_SHARE;
     let mut squares = 0.0;
-    for (i, (link, &inertia)) in joints().enumerate() {
+    for i in in_turn::<DOF>(DOF) {
+        let (link, inertia) = (&links[i], inertias[i]);
         // Without the bound by torque s is proportional to kv^2.
-        let of_one = SWING * link.speed_limit * libm::sqrt(inertia);
+        let of_one = SWING * link.speed_limit * inertia.square_root();
         let gain = friction_gain(link, inertia)
-            .min(libm::sqrt(calm / of_one))
+            .min((calm / of_one).square_root())
             .max(SPEED_GAIN_MIN);
         let shaking = shaking(link, inertia, gain);
         squares += shaking * shaking;
@@ -149,11 +153,13 @@ fn by_rule(parameters: &ArmParameters, inertias: &[f64; DOF]) -> JointLimits {
         limits.braking[i] = 4.4 * link.speed_limit;
     }
     let mut share = 1.0f64;
-    for (link, &inertia) in joints() {
-        let rate = RATE_SHARE * link.torque_rate_limit;
-        share = share.min(rate / libm::sqrt(inertia * squares));
+    for i in in_turn::<DOF>(DOF) {
+        let rate = RATE_SHARE * links[i].torque_rate_limit;
+        share = share.min(rate / (inertias[i] * squares).square_root());
     }
-    limits.acceleration = limits.acceleration.map(|alpha| alpha * share);
+    for alpha in &mut limits.acceleration {
+        *alpha *= share;
+    }
     limits
 }
 
@@ -173,9 +179,10 @@ fn acceleration(link: &LinkParameters, inertia: f64, gain: f64) -> f64 {
     (SWING * gain * link.speed_limit).min(strong)
 }
 
-/// s \[kg^1/2 m/s3\] that goes with a kv \[1/s\].
+/// s \[kg^1/2 m/s3\] that goes with a kv \[1/s\]. Behind a call: it is in the flash once.
+#[inline(never)]
 fn shaking(link: &LinkParameters, inertia: f64, gain: f64) -> f64 {
-    gain * acceleration(link, inertia, gain) * libm::sqrt(inertia)
+    gain * acceleration(link, inertia, gain) * inertia.square_root()
 }
 
 /// Places of each joint that are looked at, and rounds over the joints.
@@ -193,11 +200,10 @@ fn largest_inertias<T: Real>(model: &ArmModel<T>) -> [f64; DOF] {
             for _ in 0..ROUNDS {
                 // Joints up to this one do not change its inertia.
                 for moved in joint + 1..DOF {
-                    walk(model, joint, moved, &ranges, &mut posture, largest);
+                    walk(model, joint, moved, &ranges, &mut posture);
                 }
             }
-            let here = inertia(model, joint, &posture);
-            *largest = here.max(*largest);
+            *largest = inertia(model, joint, &posture).max(*largest);
         }
     }
     largest
@@ -212,22 +218,19 @@ fn walk<T: Real>(
     moved: usize,
     ranges: &[[f64; 2]; DOF],
     posture: &mut [f64; DOF],
-    largest: &mut f64,
 ) {
-    let mut best = *posture;
+    let moved = moved.min(DOF - 1);
+    let ([min, max], mut best) = (ranges[moved], posture[moved]);
     let mut most = inertia(model, joint, posture);
     for place in 0..PLACES {
-        let mut tried = *posture;
-        if let (Some(angle), Some([min, max])) = (tried.get_mut(moved), ranges.get(moved)) {
-            *angle = min + (max - min) * (place as f64 / (PLACES - 1) as f64);
-        }
-        let here = inertia(model, joint, &tried);
+        let angle = min + (max - min) * (place as f64 / (PLACES - 1) as f64);
+        posture[moved] = angle;
+        let here = inertia(model, joint, posture);
         if here > most {
-            (best, most) = (tried, here);
+            (best, most) = (angle, here);
         }
     }
-    *posture = best;
-    *largest = most.max(*largest);
+    posture[moved] = best;
 }
 
 /// Behind a call: it is in the flash once.

@@ -9,9 +9,8 @@
 //! ```
 //!
 //! the point comes nearer on both sides of the straight posture, by c/2 \[m/rad2\], and b/c is how
-//! far the arm is already bent. Of the motions n_j that the null space makes of each joint that one
-//! is taken that brings it nearest; a small acceleration bends the arm until the level can
-//! drive it by itself.
+//! far the arm is already bent. Of the motions of the null space that one is taken that brings it
+//! nearest; a small acceleration bends the arm until the level can drive it by itself.
 
 use super::bounds::JointBounds;
 use super::motion::WhitenedMotion;
@@ -19,7 +18,7 @@ use super::spectrum::Spectrum;
 use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
 use crate::fault::IndexSet;
-use crate::joint::{DOF, JointMatrix, JointVector, Vector3, zeros};
+use crate::joint::{DOF, JointVector, Matrix3, Vector3, in_turn, zeros};
 use crate::ranges::{
     BEND_ACCELERATION, BEND_CURVATURE_MIN, BEND_ERROR, BEND_PREFERRED, BEND_ROOM_MIN, BEND_TOWARDS,
     MAX_ROWS, RELEASE_DAMPING,
@@ -33,13 +32,42 @@ use crate::task::rows::TaskRows;
 pub struct WayOut<T: Real> {
     /// Acceleration \[rad/s2\] that the null space is asked for on top of the rest.
     pub acceleration: JointVector<T>,
+    /// The same whitened, L^T a; without a meaning where nothing [`bends`](Self::bends).
+    pub(super) whitened: JointVector<T>,
     /// The first level that is off its target along a direction that it has lost, if no motion
     /// of the null space brings it nearer: it has no way out.
     pub stuck: IndexSet,
     /// x, of which the null space has n: every cycle brings it nearer to the best motion.
-    motion: JointVector<T>,
+    pub(super) motion: JointVector<T>,
     /// Whether it is that of a level that is being bent for.
-    is_begun: bool,
+    pub(super) is_begun: bool,
+    /// Of the cycle alone; here, because on the stack it would have to be cleared first.
+    taken: [Taken<T>; MAX_ROWS],
+}
+
+/// What a direction of a level takes from the joint motions, perpendicular to what those above
+/// it take.
+#[derive(Clone, Copy, Debug)]
+struct Taken<T: Real> {
+    row: JointVector<T>,
+    /// How much of it, over the square of its length.
+    weight: T,
+}
+
+impl<T: Real> Taken<T> {
+    const NONE: Self = Self {
+        row: zeros(),
+        weight: T::ZERO,
+    };
+
+    /// Takes from `motion` what belongs to it.
+    #[inline(always)]
+    fn take_from(&self, motion: &mut JointVector<T>) {
+        let part = self.row.dot(motion) * self.weight;
+        for i in 0..DOF {
+            motion[i] -= self.row[i] * part;
+        }
+    }
 }
 
 /// Where an arm is with a level released.
@@ -67,9 +95,11 @@ impl<T: Real> WayOut<T> {
     pub const fn new() -> Self {
         Self {
             acceleration: zeros(),
+            whitened: zeros(),
             stuck: IndexSet::NONE,
             motion: zeros(),
             is_begun: false,
+            taken: [Taken::NONE; MAX_ROWS],
         }
     }
 
@@ -92,84 +122,99 @@ impl<T: Real> WayOut<T> {
         }
     }
 
-    /// Of the levels that are off their target the first, so that a cycle bends for one. Whether
-    /// there is one.
+    /// Of the levels that are off their target along what they have lost the first, so that a
+    /// cycle bends for one. Whether there is one.
     #[inline(never)]
     fn bend_for_first(&mut self, arm: &Straight<'_, T>) -> bool {
         for (number, level) in arm.levels.as_slice().iter().enumerate() {
-            if arm.spectrum.released.contains(number) {
-                let lost = lost_error(level, arm.rows, arm.spectrum);
-                let error = lost.dot(&lost).square_root();
-                let least = T::from_f64(BEND_ERROR) / level.length;
-                let share = (error / least - T::ONE).least(T::ONE);
-                if share > T::ZERO {
-                    self.bend(arm, number, level, &(lost / error), share);
-                    return true;
-                }
+            let lost = lost_error(level, arm.rows, arm.spectrum);
+            let error = lost.dot(&lost).square_root();
+            let least = T::from_f64(BEND_ERROR) / level.length;
+            let share = (error / least - T::ONE).least(T::ONE);
+            if share > T::ZERO {
+                self.acceleration = self.nearest(arm);
+                self.whitened = arm.dynamics.cholesky.upper_times(&self.acceleration);
+                let way = self.side(arm, level, &(lost / error));
+                self.stuck.insert_if(number, way.is_none());
+                let asked = way.map_or(T::ZERO, |side| self.asked(arm, side) * share);
+                self.acceleration *= asked;
+                self.whitened *= asked;
+                return true;
             }
         }
         false
     }
 
-    /// Of one level, `towards` being the unit vector e.
+    /// The null-space motion n that gains most on the target for its size, as far as the cycles
+    /// before have found it: its fastest joint, the one that bends, goes up with 1 rad/s. x gets the
+    /// same scale.
     #[inline(never)]
-    fn bend(
-        &mut self,
-        arm: &Straight<'_, T>,
-        number: usize,
-        level: &Level<T>,
-        towards: &Vector3<T>,
-        share: T,
-    ) {
-        let (slope, curvature) = second_order(level, arm.kinematics, towards);
-        let (motion, turned) = self.nearest(arm, &curvature);
-        let nearer = motion.dot(&turned) * level.length;
-        self.acceleration = zeros();
-        let mut way = None;
-        if nearer > T::from_f64(BEND_CURVATURE_MIN) {
-            let bent = slope.dot(&motion) * level.length / nearer;
-            way = side_of(arm, &motion, bent);
-        }
-        self.stuck.insert_if(number, way.is_none());
-        if let Some(side) = way {
-            let whitened = arm.dynamics.cholesky.upper_times(&motion);
-            let damping = T::from_f64(RELEASE_DAMPING) * arm.spectrum.release;
-            let others = motion.dot(&(arm.residual + arm.null_force))
-                - whitened.dot(&arm.motion.null) * damping;
-            let others = others / whitened.dot(&whitened);
-            let opposing = (-others * T::ONE.with_sign_of(side)).larger(T::ZERO);
-            let asked = side * (T::from_f64(BEND_ACCELERATION) + opposing);
-            self.acceleration = motion * (asked * share);
-        }
-    }
-
-    /// The null-space motion n that gains most on the target for its size, and H n: the first
-    /// eigenvector of H in the null space, by one round of the power method in every cycle. As
-    /// fast as its fastest joint, which goes up: that is the one that bends.
-    #[inline(always)]
-    fn nearest(
-        &mut self,
-        arm: &Straight<'_, T>,
-        curvature: &JointMatrix<T>,
-    ) -> (JointVector<T>, JointVector<T>) {
+    fn nearest(&mut self, arm: &Straight<'_, T>) -> JointVector<T> {
         if !self.is_begun {
             // Not along a direction of any arm.
             let begin = [0.9, 1.1, -0.7, 1.3, 0.8, -1.2, 0.6];
             (self.motion, self.is_begun) = (begin.map(T::from_f64).into(), true);
         }
-        let motion = in_null_space(arm, &self.motion);
+        let motion = self.in_null_space(arm);
         let mut fastest = T::from_f64(1e-30);
         for &speed in motion.iter() {
             if speed.magnitude() > fastest.magnitude() {
                 fastest = speed;
             }
         }
-        let motion = motion / fastest;
-        let turned = curvature * motion;
+        let inverse = T::ONE / fastest;
+        self.motion *= inverse;
+        motion * inverse
+    }
+
+    /// What of x the null space has, with all joints alike: the directions of the levels as
+    /// joint-space rows, made perpendicular to each other, and how much each is kept.
+    #[inline(always)]
+    fn in_null_space(&mut self, arm: &Straight<'_, T>) -> JointVector<T> {
+        let mut left = self.motion;
+        for (place, direction) in arm.spectrum.directions().iter().enumerate() {
+            let Some((above, [own, ..])) = self.taken.split_at_mut_checked(place) else {
+                break;
+            };
+            own.row = arm.dynamics.cholesky.lower_times(&direction.along);
+            for other in above {
+                other.take_from(&mut own.row);
+            }
+            let squared = own.row.dot(&own.row).larger(T::from_f64(1e-24));
+            own.weight = direction.keep * direction.mobility.larger(T::ZERO) / squared;
+            own.take_from(&mut left);
+        }
+        left
+    }
+
+    /// To which side the arm is bent for a level and how much, -1 to 1, along n, which stands in the
+    /// place of the acceleration; `towards` is the unit vector e. None where there is no way. Makes
+    /// the round of the power method, towards the first eigenvector of H in the null space.
+    #[inline(never)]
+    fn side(&mut self, arm: &Straight<'_, T>, level: &Level<T>, towards: &Vector3<T>) -> Option<T> {
+        let motion = &self.acceleration;
+        let second = SecondOrder::new(level, arm.kinematics, towards, motion);
         // Of eigenvalues of both signs the largest wins: none is below minus the norm.
-        let shift = curvature.dot(curvature).square_root();
-        self.motion = turned + self.motion * (shift / fastest);
-        (motion, turned)
+        for i in 0..DOF {
+            self.motion[i] = second.turned[i] + self.motion[i] * second.norm;
+        }
+        let nearer = motion.dot(&second.turned) * level.length;
+        if nearer > T::from_f64(BEND_CURVATURE_MIN) {
+            return side_of(arm, motion, second.slope * level.length / nearer);
+        }
+        None
+    }
+
+    /// Acceleration \[rad/s2\] along n that bends to a side: what is wanted, and what the arm is
+    /// held back with there.
+    #[inline(always)]
+    fn asked(&self, arm: &Straight<'_, T>, side: T) -> T {
+        let damping = T::from_f64(RELEASE_DAMPING) * arm.spectrum.release;
+        let forces = arm.residual + arm.null_force;
+        let others = self.acceleration.dot(&forces) - self.whitened.dot(&arm.motion.null) * damping;
+        let others = others / self.whitened.dot(&self.whitened);
+        let opposing = (-others * T::ONE.with_sign_of(side)).larger(T::ZERO);
+        side * (T::from_f64(BEND_ACCELERATION) + opposing)
     }
 }
 
@@ -192,12 +237,15 @@ fn lost_error<T: Real>(level: &Level<T>, rows: &TaskRows<T>, spectrum: &Spectrum
         *error = of_row;
     }
     for direction in directions.iter().take(3) {
-        let mut row: JointVector<T> = zeros();
-        for (other, &entry) in directions.iter().zip(&direction.column) {
-            row += other.row * entry;
+        let mut released = level.filters.release(direction.mobility);
+        // What levels above take from a direction is no straight arm: its row may have more.
+        if level.start > 0 && released > T::ZERO {
+            let mut row: JointVector<T> = zeros();
+            for (other, &entry) in directions.iter().zip(&direction.column) {
+                row += other.row * entry;
+            }
+            released = level.filters.release(row.dot(&row));
         }
-        // What levels above take from a direction is no straight arm.
-        let released = level.filters.release(row.dot(&row));
         direction.add_part(direction.part(&error) * released, &mut lost);
     }
     let (mut of_axes, mut next) = (zeros(), 0);
@@ -210,57 +258,67 @@ fn lost_error<T: Real>(level: &Level<T>, rows: &TaskRows<T>, spectrum: &Spectrum
     of_axes
 }
 
-/// J^T e, and H of what a level tracks along e.
-#[inline(always)]
-fn second_order<T: Real>(
-    level: &Level<T>,
-    kinematics: &Kinematics<T>,
-    towards: &Vector3<T>,
-) -> (JointVector<T>, JointMatrix<T>) {
-    let (columns, diagonal) = match &level.tracked {
-        LevelPoint::Position(link, offset) => {
-            let motion = kinematics.point(*link, offset);
-            (kinematics.point_jacobian(*link, &motion).jacobian, T::ONE)
-        }
-        LevelPoint::Orientation(link, _) => (kinematics.angular_jacobian(*link).jacobian, T::ZERO),
-    };
-    let column = |of: &[JointVector<T>; 3], i: usize| Vector3::from([of[0][i], of[1][i], of[2][i]]);
-    let (mut slope, mut curvature) = (zeros(), zeros());
-    for i in 0..DOF {
-        slope[i] = towards.dot(&column(&columns, i));
-        let turned = towards.cross(&column(&kinematics.axis, i));
-        curvature[(i, i)] = turned.dot(&column(&columns, i)) * diagonal;
-        // An axis turns with the joints before it, never with those behind: half of what a point
-        // has is the mean of both.
-        let half = (T::ONE + diagonal) * T::HALF;
-        for k in i + 1..DOF {
-            let mixed = turned.dot(&column(&columns, k)) * half;
-            curvature[(i, k)] = mixed;
-            curvature[(k, i)] = mixed;
-        }
-    }
-    (slope, curvature)
+/// How what a level tracks goes along e with a joint motion n, to the second order.
+struct SecondOrder<T: Real> {
+    /// b = e^T J n.
+    slope: T,
+    /// H n.
+    turned: JointVector<T>,
+    /// |H|: no eigenvalue is larger, of either sign.
+    norm: T,
 }
 
-/// What of a joint motion the null space has, with all joints alike: the directions of the levels
-/// as joint-space rows, made perpendicular to each other, and how much each is kept.
-#[inline(always)]
-fn in_null_space<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>) -> JointVector<T> {
-    let mut rows: [(JointVector<T>, T); MAX_ROWS] = [(zeros(), T::ZERO); MAX_ROWS];
-    let mut left = *motion;
-    for (place, direction) in arm.spectrum.directions().iter().enumerate() {
-        let mut row: JointVector<T> = arm.dynamics.cholesky.lower_times(&direction.along);
-        for (other, kept) in rows.iter().take(place) {
-            row -= other * (other.dot(&row) * *kept);
+impl<T: Real> SecondOrder<T> {
+    /// With t_i = e x z_i, H_ik = t_i^T J_k for i <= k, so that
+    ///
+    /// ```text
+    /// (H n)_i = t_i^T (sum of J_k n_k, k >= i) + J_i^T (sum of t_k n_k, k < i)
+    /// |H|^2   = sum of J_k^T (t_k t_k^T + 2 sum of t_i t_i^T, i < k) J_k
+    /// ```
+    ///
+    /// An axis turns with the joints before it, never with those behind: half of what a point has
+    /// is the mean of both.
+    #[inline(always)]
+    fn new(
+        level: &Level<T>,
+        kinematics: &Kinematics<T>,
+        towards: &Vector3<T>,
+        motion: &JointVector<T>,
+    ) -> Self {
+        let (link, point, share) = match &level.tracked {
+            LevelPoint::Position(link, offset) => {
+                (*link, Some(kinematics.point(*link, offset).x), T::ONE)
+            }
+            LevelPoint::Orientation(link, _) => (*link, None, T::HALF),
+        };
+        let mut turned: JointVector<T> = zeros();
+        let (mut moved, mut turn): (Vector3<T>, Vector3<T>) = (zeros(), zeros());
+        let (mut squares, mut norm): (Matrix3<T>, T) = (zeros(), T::ZERO);
+        for i in in_turn::<DOF>(link.number()) {
+            let axis = kinematics.joint_axis(i);
+            let column = match &point {
+                Some(x) => axis.cross(&(x - kinematics.joint_place(i))),
+                None => axis,
+            };
+            let of_axis = towards.cross(&axis);
+            // The first sum less what is the same for all joints.
+            turned[i] = turn.dot(&column) - of_axis.dot(&moved);
+            moved += column * motion[i];
+            turn += of_axis * motion[i];
+            let own = of_axis.dot(&column);
+            norm += own * own + column.dot(&(squares * column));
+            squares += of_axis * (of_axis + of_axis).transpose();
         }
-        row /= row.dot(&row).square_root().larger(T::from_f64(1e-12));
-        let kept = direction.keep * direction.mobility.larger(T::ZERO);
-        left -= row * (row.dot(motion) * kept);
-        if let Some(place) = rows.get_mut(place) {
-            *place = (row, kept);
+        let all = moved.cross(towards);
+        for i in in_turn::<DOF>(link.number()) {
+            turned[i] = (turned[i] + kinematics.joint_axis(i).dot(&all)) * share;
+        }
+        Self {
+            slope: towards.dot(&moved),
+            turned,
+            norm: norm.square_root() * share,
         }
     }
-    left
 }
 
 /// To which side of a null-space motion the arm is to bend and how much, -1 to 1, if it is `bent`
@@ -271,7 +329,7 @@ fn side_of<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>, bent: T) -> 
     let (one, little) = (T::ONE, T::from_f64(0.1));
     let (mut back, mut ahead) = (T::INFINITE, T::INFINITE);
     let (mut wanted, mut weight) = (T::ZERO, T::ZERO);
-    for i in 0..DOF {
+    for i in in_turn::<DOF>(DOF) {
         let speed = motion[i];
         if speed.magnitude() > little {
             let straight = arm.q[i] - bent * speed;

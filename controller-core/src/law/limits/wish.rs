@@ -15,6 +15,7 @@
 use super::bounds::JointBounds;
 use super::motion::WhitenedMotion;
 use super::spectrum::{Spectrum, left_by};
+use super::way_out::WayOut;
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
@@ -64,6 +65,7 @@ pub(crate) struct Ask<'a, T: Real> {
     pub rows: &'a TaskRows<T>,
     pub spectrum: &'a Spectrum<T>,
     pub motion: &'a WhitenedMotion<T>,
+    pub way_out: &'a WayOut<T>,
     /// f - D n \[Nm\].
     pub null_force: &'a JointVector<T>,
     /// r \[Nm\].
@@ -245,13 +247,16 @@ impl<T: Real> Wish<T> {
         (command, shaped)
     }
 
-    /// u_n.
+    /// u_n, with what bends a straight arm.
     #[inline(always)]
     fn null_command(&mut self, ask: &Ask<'_, T>) -> JointVector<T> {
         let mut force = ask.dynamics.cholesky.solve_lower(ask.null_force);
         let damping = T::from_f64(RELEASE_DAMPING) * ask.spectrum.release;
         for i in 0..DOF {
             force[i] -= ask.motion.null[i] * damping;
+        }
+        if ask.way_out.bends() {
+            force += ask.way_out.whitened;
         }
         left_by(ask.spectrum.directions(), &force, &mut self.parts) + self.residual
     }

@@ -3,7 +3,8 @@
 use nalgebra::Matrix4;
 
 use crate::arm::{ArmModel, LinkModel};
-use crate::joint::{DOF, JointMatrix, zeros};
+use crate::joint::{DOF, JointMatrix, in_turn, zeros};
+use crate::law::null_space::add_coupled;
 use crate::linalg::{Cholesky, largest_eigenpair};
 use crate::real::Real;
 
@@ -24,6 +25,22 @@ pub(super) const NONE: DampingRate = DampingRate {
     joint: 1,
     posture: [0.0; DOF],
 };
+
+impl DampingRate {
+    /// That of another posture \[rad\] where it is faster. Behind a call: it is in the flash once.
+    #[inline(never)]
+    pub(super) fn raise<T: Real>(
+        &mut self,
+        arm: &ArmModel<T>,
+        damping: &JointMatrix<T>,
+        posture: &[f64; DOF],
+    ) {
+        let mode = mode_at(arm, damping, *posture);
+        if mode.rate > self.rate {
+            *self = mode;
+        }
+    }
+}
 
 /// The fastest mode at one posture \[rad\]. Behind a call: once in the flash, and its work set
 /// is not on the stack of a search several times.
@@ -121,11 +138,13 @@ fn in_parent<T: Real>(link: &LinkModel<T>, angle: T, x: &Matrix4<T>) -> Matrix4<
 fn fastest_of<T: Real>(factor: &Cholesky<T>, damping: &JointMatrix<T>) -> (T, usize) {
     let (rate, whitened) = largest_eigenpair(&mut factor.whiten(damping));
     let mode = factor.solve_upper(&whitened);
-    let power = mode.component_mul(&(damping * mode));
-    let mut joint = 0;
-    for i in 1..DOF {
-        if power[i] > power[joint] {
-            joint = i;
+    let mut torque = zeros();
+    add_coupled(&mut torque, damping, &mode);
+    let (mut most, mut joint) = (T::ZERO, 0);
+    for i in in_turn::<DOF>(DOF) {
+        let power = mode[i] * torque[i];
+        if power > most {
+            (most, joint) = (power, i);
         }
     }
     (rate, joint + 1)

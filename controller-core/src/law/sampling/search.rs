@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 
 use super::mode::{DampingRate, NONE, mode_at};
 use crate::arm::ArmModel;
-use crate::joint::{DOF, JointMatrix};
+use crate::joint::{DOF, JointMatrix, in_turn};
 use crate::real::Real;
 
 /// Postures of the net.
@@ -55,16 +55,17 @@ fn knot(ranges: &[[f64; 2]; DOF], n: usize) -> [f64; DOF] {
 pub(super) fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>) -> DampingRate {
     let ranges = ranges(arm);
     let mut places = [NONE; CLIMBS];
-    for n in 0..NET {
+    for n in in_turn::<NET>(NET) {
         keep_worst(&mut places, &mode_at(arm, damping, knot(&ranges, n)));
     }
     let mut summits = [NONE; LAST_CLIMBS];
-    for place in &places {
-        keep_worst(&mut summits, &climbed(arm, damping, &ranges, place, ROUNDS));
+    for i in in_turn::<CLIMBS>(CLIMBS) {
+        let summit = climbed(arm, damping, &ranges, &places[i], ROUNDS);
+        keep_worst(&mut summits, &summit);
     }
     let mut fastest = NONE;
-    for summit in &summits {
-        let last = climbed(arm, damping, &ranges, summit, LAST_ROUNDS);
+    for i in in_turn::<LAST_CLIMBS>(LAST_CLIMBS) {
+        let last = climbed(arm, damping, &ranges, &summits[i], LAST_ROUNDS);
         if last.rate > fastest.rate {
             fastest = last;
         }
@@ -72,14 +73,19 @@ pub(super) fn fastest_mode<T: Real>(arm: &ArmModel<T>, damping: &JointMatrix<T>)
     fastest
 }
 
-/// Puts a mode among the worst ones seen, worst first, if it belongs there. Once in the flash.
+/// Puts a mode in the place of the slowest one of the worst seen, if it is faster.
 #[inline(never)]
 fn keep_worst(worst: &mut [DampingRate], mode: &DampingRate) {
-    let mut next = *mode;
-    for place in worst {
-        if next.rate > place.rate {
-            next = core::mem::replace(place, next);
+    let mut slowest = mode.rate;
+    let mut place = None;
+    for seen in worst {
+        if seen.rate < slowest {
+            slowest = seen.rate;
+            place = Some(seen);
         }
+    }
+    if let Some(place) = place {
+        *place = *mode;
     }
 }
 
@@ -95,34 +101,26 @@ fn climbed<T: Real>(
     let mut best = *start;
     let mut step = 0.125;
     for _ in 0..rounds {
-        let before = best;
-        for (i, [min, max]) in ranges.iter().enumerate() {
-            for way in [step * (max - min), -step * (max - min)] {
+        let (rate, before) = (best.rate, best.posture);
+        for i in in_turn::<DOF>(DOF) {
+            let [min, max] = ranges[i];
+            for way in [step, -step] {
                 let mut posture = best.posture;
-                if let Some(angle) = posture.get_mut(i) {
-                    *angle = (*angle + way).min(*max).max(*min);
-                }
-                let mode = mode_at(arm, damping, posture);
-                if mode.rate > best.rate {
-                    best = mode;
-                }
+                posture[i] = (posture[i] + way * (max - min)).min(max).max(min);
+                best.raise(arm, damping, &posture);
             }
         }
-        if best.rate <= before.rate {
+        if best.rate <= rate {
             step *= 0.5;
             continue;
         }
         // Once more as far: along a ridge that no single joint follows.
-        let further = core::array::from_fn(|i| {
+        let mut further = best.posture;
+        for i in in_turn::<DOF>(DOF) {
             let [min, max] = ranges[i];
-            (2.0 * best.posture[i] - before.posture[i])
-                .min(max)
-                .max(min)
-        });
-        let mode = mode_at(arm, damping, further);
-        if mode.rate > best.rate {
-            best = mode;
+            further[i] = (2.0 * further[i] - before[i]).min(max).max(min);
         }
+        best.raise(arm, damping, &further);
     }
     best
 }
