@@ -1,6 +1,7 @@
 //! The command line: what it accepts, and one line for everything it does not.
 
 mod files;
+mod gains;
 mod model;
 mod notes;
 mod run;
@@ -20,6 +21,7 @@ use cell::invalid::Invalid;
 use cell::scenario::{Scenario, built_in_names};
 use cell::terminal::{print, tell};
 
+pub use gains::GainsOptions;
 pub use model::ModelOptions;
 pub use run::RunOptions;
 pub use serve::ServeOptions;
@@ -62,6 +64,8 @@ enum Command {
     Study(StudyOptions),
     /// Arms of one's own: from a URDF to an arm file, and what an arm is like
     Model(ModelOptions),
+    /// Propose gains for an arm and a cycle, as TOML for a scenario file
+    Gains(GainsOptions),
     /// Print a built-in scenario as commented TOML
     Scenario {
         #[arg(help = built_in_names())]
@@ -77,7 +81,7 @@ enum Command {
 
 /// What the program can be asked for.
 const COMMANDS: &[&str] = &[
-    "run", "serve", "paper", "study", "model", "scenario", "explain",
+    "run", "serve", "paper", "study", "model", "gains", "scenario", "explain",
 ];
 
 /// Runs the program with the arguments of the process.
@@ -104,6 +108,7 @@ pub fn main() -> ExitCode {
         Some(Command::Paper { out }) => crate::paper::run(&out),
         Some(Command::Study(options)) => options.run(),
         Some(Command::Model(options)) => options.run(),
+        Some(Command::Gains(options)) => options.run(),
         Some(Command::Scenario { name }) => {
             Scenario::built_in_text(&name).and_then(print).map(|()| 0)
         }

@@ -6,7 +6,7 @@ use std::io;
 
 use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
-use controller_core::{Controller, ControllerConfig, Measurement, Reference};
+use controller_core::{Controller, ControllerConfig, Measurement, Reference, State};
 
 use crate::after_fault::{Acting, Ending};
 use crate::arm_points::origins;
@@ -45,6 +45,18 @@ pub struct Experiment {
     pub seed: u64,
     /// What the plant does beyond the reference.
     pub options: PlantOptions,
+}
+
+/// A cycle of a torque law that is watched.
+pub(crate) struct Watched<'a> {
+    /// Its time \[s\].
+    pub t_s: f64,
+    /// What comes into it.
+    pub measurement: &'a Measurement<f64>,
+    /// The memory of the law.
+    pub state: &'a State<f64>,
+    /// Whether it is that behind the cycle, or still that before it.
+    pub decided: bool,
 }
 
 impl Experiment {
@@ -121,8 +133,20 @@ impl Experiment {
     pub fn run(
         &self,
         controller: &Controller<f64>,
+        sink: impl FnMut(&Sample) -> io::Result<()>,
+        progress: impl FnMut(f64),
+    ) -> io::Result<Summary> {
+        self.run_watched(controller, sink, progress, |_| ())
+    }
+
+    /// The same, with a look at the memory of a torque law before and behind each of its cycles in
+    /// this process.
+    pub(crate) fn run_watched(
+        &self,
+        controller: &Controller<f64>,
         mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
+        mut watch: impl FnMut(&Watched<'_>),
     ) -> io::Result<Summary> {
         if self.measurement == MeasurementKind::Fri {
             return self.run_over_fri(sink, progress);
@@ -195,7 +219,20 @@ impl Experiment {
                 false => scenario.reference(&origins, &scenario.start(), t_s),
             };
             let motors = *plant.motors().unwrap_or(&truth);
+            let mut look = |driver: &Driver<'_>, decided| {
+                if let Some(state) = driver.state() {
+                    let measurement = &measurement;
+                    watch(&Watched {
+                        t_s,
+                        measurement,
+                        state,
+                        decided,
+                    });
+                }
+            };
+            look(&driver, false);
             let decision = driver.decide(&measurement, &reference, &motors);
+            look(&driver, true);
             let acting = Acting {
                 torque: decision.torque,
                 fault: decision.fault,

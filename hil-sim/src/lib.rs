@@ -13,7 +13,7 @@
 //!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
 //! - [`output`], [`trace`], [`report`]: the files of a run; [`paper`]: every experiment and
 //!   claim of the paper; [`study`]: many runs near and beyond limits;
-//! - [`model`]: arms of others, from a URDF; what an arm is like;
+//! - [`model`]: arms of others, from a URDF; what an arm is like; [`gains`]: gains for one;
 //! - [`serve`]: the robot on a socket or a serial line; [`cli`]: the program.
 
 pub mod after_fault;
@@ -23,6 +23,7 @@ pub mod contact;
 pub mod controllers;
 pub mod experiment;
 pub mod explain;
+pub mod gains;
 pub mod interrupt;
 pub mod limit_events;
 pub mod link;

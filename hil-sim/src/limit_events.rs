@@ -1,4 +1,6 @@
-//! What the law within limits did in a run, in times, shares and sentences.
+//! What the law within limits did in a run, in times and shares; sentences say it.
+
+mod sentences;
 
 use controller_core::arm::ArmParameters;
 use controller_core::fault::IndexSet;
@@ -68,6 +70,9 @@ pub struct LevelEvents {
     pub error_max: f64,
 }
 
+/// What a degraded level is.
+const NEAR_ONE: &str = "near a singularity";
+
 /// Above this the bounds of the joints disturb a level \[m/s2\]: at K_p = 400 /s2 it is 0.025 mm.
 const DISTURBED: f64 = 0.01;
 
@@ -114,55 +119,21 @@ impl LimitEvents {
         !self.joints.is_empty()
     }
 
-    /// One sentence per level that is stuck at the end.
+    /// Whether a limit was met.
     #[must_use]
-    pub fn unreached(&self, levels: &[(String, bool)]) -> Vec<String> {
-        let events = (1..).zip(self.levels.iter().zip(levels));
-        events
-            .filter_map(|(number, (events, (name, rotates)))| {
-                let error = 1e3 * events.stuck_at_end?;
-                let unit = if *rotates { "mrad" } else { "mm" };
-                Some(format!(
-                    "level {number} ({name}) ends {error:.3} {unit} off its target, stuck in a \
-                     singularity that no free motion leads out of"
-                ))
-            })
-            .collect()
+    pub fn is_any(&self) -> bool {
+        let joints = self.joints.iter().map(JointEvents::times);
+        joints.flatten().any(|time| time > 0.0)
+            || self.levels.iter().any(LevelEvents::is_any)
+            || self.null_scaled_s > 0.0
+            || self.unresolved_cycles > 0
     }
+}
 
-    /// One sentence per kind of event.
-    #[must_use]
-    pub fn sentences(&self, arm: &ArmParameters, levels: &[(String, bool)]) -> Vec<String> {
-        let mut said = Vec::new();
-        for (events, link) in self.joints.iter().zip(&arm.links) {
-            for (time, what) in [
-                (events.at_range_s, "at the end of its range"),
-                (events.at_speed_s, "at its speed limit"),
-                (events.at_acceleration_s, "at its acceleration limit"),
-            ] {
-                if time > 0.0 {
-                    said.push(format!("{} was {what} for {time:.2} s", link.name));
-                }
-            }
-        }
-        for (number, (events, (name, rotates))) in (1..).zip(self.levels.iter().zip(levels)) {
-            said.extend(events.sentences(number, name, *rotates));
-        }
-        if self.null_scaled_s > 0.0 {
-            said.push(format!(
-                "the null space got no more than {:.0} % of what it asked for, for {:.2} s in all",
-                100.0 * self.null_least_share,
-                self.null_scaled_s
-            ));
-        }
-        if self.unresolved_cycles > 0 {
-            said.push(format!(
-                "in {} cycles too many joints were at their bounds at once: these were kept, \
-                 priorities were not",
-                self.unresolved_cycles
-            ));
-        }
-        said
+impl JointEvents {
+    /// At the range, at the speed limit, anywhere else \[s\].
+    pub(crate) fn times(&self) -> [f64; 3] {
+        [self.at_range_s, self.at_speed_s, self.at_acceleration_s]
     }
 }
 
@@ -197,34 +168,18 @@ impl LevelEvents {
         }
     }
 
-    fn sentences(&self, number: usize, name: &str, rotates: bool) -> Vec<String> {
-        let mut why = Vec::new();
-        for (time, what) in [
-            (self.degraded_s, "near a singularity"),
-            (self.released_s, "in a singularity"),
-            (self.stuck_s, "stuck there"),
-            (self.shaped_s, "with a shortened command"),
+    /// How long each was so \[s\], the most important first.
+    fn times(&self) -> [(f64, &'static str); 5] {
+        [
+            (self.stuck_s, "stuck in a singularity"),
             (self.disturbed_s, "disturbed by the bounds of joints"),
-        ] {
-            if time > 0.0 {
-                why.push(format!("{what} for {time:.2} s"));
-            }
-        }
-        if self.scaled_s > 0.0 {
-            why.push(format!(
-                "with no more than {:.0} % of what it asked for, {:.2} s in all",
-                100.0 * self.least_share,
-                self.scaled_s
-            ));
-        }
-        if why.is_empty() {
-            return why;
-        }
-        let unit = if rotates { "mrad" } else { "mm" };
-        vec![format!(
-            "level {number} ({name}) gave way by up to {:.3} {unit}: {}",
-            1e3 * self.error_max,
-            why.join(", ")
-        )]
+            (self.released_s, "in a singularity"),
+            (self.degraded_s, NEAR_ONE),
+            (self.shaped_s, "with a shortened command"),
+        ]
+    }
+
+    fn is_any(&self) -> bool {
+        self.scaled_s > 0.0 || self.times().iter().any(|(time, _)| *time > 0.0)
     }
 }

@@ -3,10 +3,12 @@
 //! Bottom-up: [`frame`] and [`body`], what is put together; [`urdf`], the file as data; [`tree`],
 //! how its links hang together; [`chain`], seven joints in a row with what they move; [`motion`],
 //! their dynamics; [`table`], the same as a DH table; [`agreement`], how far the two are apart;
-//! [`search`], postures that are the worst in something; [`import`](mod@import), the whole way;
-//! [`figures`], what a table is like; [`rust`] and [`c`], a table as source text.
+//! [`at_rest`], an arm in a posture; [`search`], postures that are the worst in something;
+//! [`import`](mod@import), the whole way; [`figures`], what a table is like; [`rust`] and [`c`], a
+//! table as source text.
 
 pub mod agreement;
+pub mod at_rest;
 pub mod body;
 pub mod c;
 pub mod chain;

@@ -11,6 +11,7 @@ use super::files::{Files, announce};
 use super::notes;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
+use crate::explain::state_at;
 use crate::interrupt;
 use crate::output::Folder;
 use crate::plant::PlantOptions;
@@ -19,7 +20,7 @@ use crate::summary::{Summary, Verdict};
 use cell::arguments::values::{number, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, Switch};
-use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED, TIME_S};
 use cell::scenario::{Scenario, built_in_names};
 use cell::terminal::{print, show};
 
@@ -70,6 +71,9 @@ pub struct RunOptions {
     #[arg(long, default_value = "4", value_parser = number(TRACE_GB),
         help = format!("Largest trace.csv that may be written, in GB, {TRACE_GB}"))]
     max_trace_gb: f64,
+    #[arg(long, value_parser = number(TIME_S),
+        help = format!("Also write the cycle at this time in s, {TIME_S}, as state.json for explain"))]
+    state_at: Option<f64>,
     /// Output folder [default: out/SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -89,7 +93,12 @@ impl RunOptions {
             .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
         let controller = experiment.controller()?;
         announce(&experiment.scenario, self.max_trace_gb)?;
-        let folder = Folder::claim(&out)?;
+        let state = self.state_at.map(|t_s| state_at(&experiment, t_s));
+        let state = state.transpose()?;
+        let mut folder = Folder::claim(&out)?;
+        if let Some(state) = state {
+            folder.add("state.json", &state)?;
+        }
         interrupt::heed();
         let summary = execute(&experiment, &controller, folder, Some(&command))?;
         let mut text = experiment_heading(&experiment);

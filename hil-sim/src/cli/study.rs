@@ -48,10 +48,10 @@ struct LimitsOptions {
     /// Read the runs from a folder with {pass,wrist,random,push}-NNN.csv.gz instead of drawing them; docs/limits-study.md
     #[arg(long)]
     from: Option<PathBuf>,
-    /// Sets of runs: ordered, pass, wrist, random, push, give, saturation [default: all that there are]
+    /// Sets of runs: ordered, pass, wrist, random, push, give, straight, saturation [default: all that there are]
     #[arg(long = "set", num_args = 1..)]
     sets: Vec<String>,
-    /// The arm, by its name or its arm file; others than lwr_iv have the sets pass and random
+    /// The arm, by its name or its arm file; others than lwr_iv have the sets pass, random and straight
     #[arg(long, default_value = "lwr_iv")]
     arm: String,
     /// How it is simulated: ideal, realistic

@@ -101,6 +101,14 @@ impl Driver<'_> {
         }
     }
 
+    /// The memory of a torque law.
+    pub fn state(&self) -> Option<&State<f64>> {
+        match self {
+            Self::Torque(driver) => Some(&driver.state),
+            Self::Position(_) => None,
+        }
+    }
+
     /// One cycle. `motors` is how they move.
     pub fn decide(
         &mut self,

@@ -2,19 +2,22 @@
 
 use std::path::Path;
 
+use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, Vector3};
+use controller_core::law::null_space as law;
 use controller_core::ranges::GAIN_MAX;
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Axes, Target, Task, TaskGains};
 use serde::Deserialize;
 
 use crate::controllers::TorqueLaw;
+use cell::arm::joint_limits::JointLimitsSpec;
 use cell::arm::robot::Robot;
 use cell::invalid::Invalid;
 use cell::names::Named;
-use cell::ranges::{LEVELS, QUATERNION_NORM, ROWS, Range};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, LEVELS, QUATERNION_NORM, ROWS, Range};
 use cell::reader;
-use cell::scenario::{EquippedArm, Mount, PointSpec, TaskSpec, ToolSpec};
+use cell::scenario::{EquippedArm, LawSpec, LevelLimitsSpec, Mount, PointSpec, TaskSpec, ToolSpec};
 
 /// K_I \[1/s\].
 const OBSERVER_GAIN: Range<f64> = Range::new(0.0, GAIN_MAX);
@@ -48,6 +51,21 @@ pub struct Input {
     /// Law; hierarchical unless given.
     #[serde(default)]
     pub controller: Option<String>,
+    /// Whether that one is within limits; unless given it is.
+    #[serde(default)]
+    pub law: Option<LawSpec>,
+    /// Of the law within limits: what it may do with the joints.
+    #[serde(default)]
+    pub joint_limits: Option<JointLimitsSpec>,
+    /// Of the law within limits: its cycle \[ms\].
+    #[serde(default = "default_cycle_ms")]
+    pub cycle_ms: f64,
+    /// Of the law within limits: cycles between measurement and torque.
+    #[serde(default)]
+    pub dead_cycles: u8,
+    /// Of the law within limits: what it remembers of the previous cycle.
+    #[serde(default)]
+    pub before: Option<Before>,
     /// Asks for an observer step before the law.
     #[serde(default)]
     pub observer: Option<ObserverStep>,
@@ -74,6 +92,9 @@ pub struct Level {
     pub kp: Vec<f64>,
     /// K_d \[1/s\].
     pub kd: Vec<f64>,
+    /// Of the law within limits: near singularities and far from the target.
+    #[serde(default)]
+    pub limits: Option<LevelLimitsSpec>,
 }
 
 /// Null-space compliance, diagonal.
@@ -86,6 +107,9 @@ pub struct NullSpace {
     pub stiffness: [f64; DOF],
     /// D \[Nms/rad\].
     pub damping: [f64; DOF],
+    /// c \[1/s\] of D = c M in the place of `damping`.
+    #[serde(default)]
+    pub damping_rate: Option<f64>,
     /// K of (14) \[1/s\], for the acceleration-level controllers.
     #[serde(default = "default_rate_gain")]
     pub rate_gain: [f64; DOF],
@@ -93,6 +117,26 @@ pub struct NullSpace {
 
 fn default_rate_gain() -> [f64; DOF] {
     [10.0; DOF]
+}
+
+fn default_cycle_ms() -> f64 {
+    2.0
+}
+
+/// What the law within limits remembers of the previous cycle; each key unless given: nothing.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Before {
+    /// Torque \[Nm\] that acted, from which the next one may not differ by more than the rate
+    /// limit.
+    #[serde(default)]
+    pub torque: Option<[f64; DOF]>,
+    /// dev \[m/s2\] of each level.
+    #[serde(default)]
+    pub disturbance: Vec<f64>,
+    /// x of the way out.
+    #[serde(default)]
+    pub way_out: Option<[f64; DOF]>,
 }
 
 /// What the observer remembers of the previous cycle.
@@ -136,18 +180,36 @@ impl Input {
         if let Some(name) = &self.controller {
             TorqueLaw::from_name(name)?;
         }
+        if self.law == Some(LawSpec::WithinLimits) && !self.is_within_limits() {
+            let allowed = "exact with a controller other than hierarchical";
+            return Err(Invalid::new("law", "within-limits", allowed));
+        }
+        CYCLE_MS.check("cycle_ms", self.cycle_ms)?;
+        DEAD_CYCLES.check("dead_cycles", self.dead_cycles)?;
+        if let Some(limits) = &self.joint_limits {
+            limits
+                .validate()
+                .map_err(|error| error.in_table("joint_limits"))?;
+        }
         if self.levels.is_empty() {
             return Err(Invalid::new("levels", "none", LEVELS));
         }
         let mut rows = 0;
         for (index, level) in self.levels.iter().enumerate() {
             rows += level
-                .validate(&arm)
+                .validate(index, &arm)
                 .map_err(|error| error.in_list("levels", index))?;
         }
         if !ROWS.contains(rows) {
             let given = format!("{rows} rows together");
             return Err(Invalid::new("levels", given, ROWS));
+        }
+        let disturbances = self.before.as_ref();
+        let disturbances = disturbances.map_or(0, |before| before.disturbance.len());
+        if disturbances > self.levels.len() {
+            let given = format!("{disturbances} values");
+            let allowed = format!("at most {}, one per level", self.levels.len());
+            return Err(Invalid::new("disturbance", given, allowed).in_table("before"));
         }
         if let Some(observer) = &self.observer {
             observer
@@ -163,7 +225,36 @@ impl Input {
     /// What of robot, mount and tool cannot be used.
     pub fn arm(&self) -> Result<EquippedArm, Invalid> {
         let (mount, tool) = (self.mount.as_ref(), self.tool.as_ref());
-        EquippedArm::equipped(self.robot.table()?, mount, tool)
+        let mut arm = EquippedArm::equipped(self.robot.table()?, mount, tool)?;
+        if let Some(limits) = &self.joint_limits {
+            arm.parameters.limits = limits.of_arm(&arm.parameters);
+        }
+        Ok(arm)
+    }
+
+    /// Whether the law is the one within limits.
+    #[must_use]
+    pub fn is_within_limits(&self) -> bool {
+        self.law != Some(LawSpec::Exact) && self.controller() == TorqueLaw::Hierarchical
+    }
+
+    /// What the tasks leave free.
+    #[must_use]
+    pub fn compliance(&self) -> law::NullSpace {
+        let NullSpace {
+            stiffness,
+            damping,
+            damping_rate,
+            ..
+        } = &self.null_space;
+        law::NullSpace {
+            stiffness: diagonal(*stiffness),
+            damping: match damping_rate {
+                Some(rate) => law::NullDamping::Inertia(*rate),
+                None => law::NullDamping::Joint(diagonal(*damping)),
+            },
+            posture: law::Posture::Constant,
+        }
     }
 
     /// The law.
@@ -176,7 +267,8 @@ impl Input {
     /// The core's tasks for `arm` and their targets.
     #[must_use]
     pub fn tasks(&self, arm: &EquippedArm) -> (Vec<Task>, Vec<Target<f64>>) {
-        self.levels.iter().map(|level| level.task(arm)).unzip()
+        let levels = self.levels.iter().enumerate();
+        levels.map(|(place, level)| level.task(place, arm)).unzip()
     }
 }
 
@@ -191,8 +283,13 @@ impl ObserverStep {
 
 impl Level {
     /// Checks point, axes and shapes; gives the number of rows.
-    fn validate(&self, arm: &EquippedArm) -> Result<usize, Invalid> {
+    fn validate(&self, place: usize, arm: &EquippedArm) -> Result<usize, Invalid> {
         self.point.validate(arm)?;
+        if let Some(limits) = &self.limits {
+            limits
+                .validate(place)
+                .map_err(|error| error.in_table("limits"))?;
+        }
         let Some(axes) = Axes::from_name(&self.axes) else {
             return Err(Invalid::new(
                 "axes",
@@ -229,7 +326,7 @@ impl Level {
         Ok(rows)
     }
 
-    fn task(&self, arm: &EquippedArm) -> (Task, Target<f64>) {
+    fn task(&self, place: usize, arm: &EquippedArm) -> (Task, Target<f64>) {
         let axes = Axes::from_name(&self.axes).unwrap_or(Axes::XYZ);
         let spread = |values: &[f64]| {
             let mut values = values.iter();
@@ -243,7 +340,7 @@ impl Level {
         };
         let gains = TaskGains::diagonal(spread(&self.kp), spread(&self.kd));
         let vector = |values: &[f64]| Vector3::from(spread(values));
-        match self.task {
+        let (task, target) = match self.task {
             TaskSpec::Position => (
                 Task::position(self.point.resolve(arm), axes, gains),
                 Target::Position {
@@ -260,7 +357,9 @@ impl Level {
                     dw: vector(&self.ddx),
                 },
             ),
-        }
+        };
+        let limits = self.limits.map(|limits| limits.of_level(place));
+        (Task { limits, ..task }, target)
     }
 }
 

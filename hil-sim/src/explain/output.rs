@@ -6,6 +6,9 @@ use controller_core::task::{Tracked, orientation};
 use controller_core::{LinkPoint, Task};
 use serde::Serialize;
 
+use super::limits::WithinLimits;
+use cell::scenario::EquippedArm;
+
 /// A matrix as an array of rows.
 type Rows = Vec<Vec<f64>>;
 
@@ -27,6 +30,8 @@ pub struct Output {
     pub residual_compensation: Vec<f64>,
     pub torque_demand: Vec<f64>,
     pub torque: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub within_limits: Option<WithinLimits>,
 }
 
 /// One level.
@@ -75,6 +80,18 @@ impl Output {
             residual_compensation: list(residual_compensation),
             torque_demand: list(&data.demand.0),
             torque: list(&data.allocation.torque),
+            within_limits: None,
+        }
+    }
+
+    /// The same with torques, and all that leads to them, of the law within limits.
+    #[must_use]
+    pub fn within_limits(self, data: &Data<f64>, tasks: &[Task], arm: &EquippedArm) -> Self {
+        Self {
+            torque_demand: list(&data.demand.0),
+            torque: list(&data.allocation.torque),
+            within_limits: Some(WithinLimits::new(data, tasks, arm)),
+            ..self
         }
     }
 }

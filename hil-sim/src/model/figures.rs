@@ -2,14 +2,13 @@
 
 use std::fmt::{self, Write as _};
 
-use controller_core::arm::dynamics::Dynamics;
-use controller_core::arm::kinematics::Kinematics;
 use controller_core::arm::{ArmModel, ArmParameters};
-use controller_core::joint::{DOF, JointMatrix, JointState, JointVector, Matrix3};
+use controller_core::joint::{DOF, JointMatrix, Matrix3};
 use controller_core::law::sampling::{DampingRate, bound, fastest_mode};
 use controller_core::task::LevelLimits;
 use nalgebra::SymmetricEigen;
 
+use super::at_rest::at_rest;
 use super::search::{drawn, highest};
 use cell::invalid::Invalid;
 
@@ -210,8 +209,9 @@ impl<'a> Figures<'a> {
     }
 }
 
-/// A posture in degrees.
-fn shown(posture: &[f64; DOF]) -> String {
+/// A posture \[rad\] in degrees.
+#[must_use]
+pub fn shown(posture: &[f64; DOF]) -> String {
     let degrees: Vec<_> = posture
         .iter()
         .map(|angle| format!("{:.1}", angle.to_degrees() + 0.0))
@@ -220,13 +220,7 @@ fn shown(posture: &[f64; DOF]) -> String {
 }
 
 fn look(arm: &ArmParameters, model: &ArmModel<f64>, q: &[f64; DOF]) -> Look {
-    let state = JointState {
-        q: (*q).into(),
-        dq: JointVector::zeros(),
-    };
-    let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
-    kinematics.update(model, &state);
-    dynamics.update(model, &kinematics, &state);
+    let (kinematics, dynamics) = at_rest(model, q);
     let flange = arm.flange_point();
     let motion = kinematics.point(flange.link, &flange.offset.into());
     let rows = kinematics.point_jacobian(flange.link, &motion);

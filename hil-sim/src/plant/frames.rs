@@ -62,6 +62,12 @@ impl Frames {
         }
     }
 
+    /// Steps of positions \[rad\] and speeds \[rad/s\] that are reported.
+    #[must_use]
+    pub fn steps(&self) -> [JointVector<f64>; 2] {
+        [&self.position, &self.speed].map(|all| JointVector::from(all.map(|scale| scale.step)))
+    }
+
     /// Positions and speeds as the motors report them.
     #[must_use]
     pub fn measured(&self, state: &JointState<f64>) -> JointState<f64> {

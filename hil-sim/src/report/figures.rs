@@ -2,14 +2,17 @@
 
 use controller_core::joint::DOF;
 
-use super::plot::{Chart, LimitLine, Panel, Scale, Series, Stroke, Style};
+use super::figure::{chart, figure};
+use super::limits;
+use super::plot::{LimitLine, Panel, Scale, Series, Stroke, Style};
 use super::recording::Recording;
 use super::run::Run;
 use super::scene;
-use super::svg::Svg;
 use super::ticks::plain;
 use crate::metrics::LevelFigures;
 use cell::scenario::Metric;
+
+pub use super::figure::Figure;
 
 /// Below this, a task acceleration is rounding \[m/s2\].
 const LEAK_FLOOR: f64 = 1e-18;
@@ -17,49 +20,18 @@ const LEAK_FLOOR: f64 = 1e-18;
 /// Below this, a row counts as lost \[1/sqrt(kg)\].
 const CONDITIONING_FLOOR: f64 = 1e-6;
 
-/// A figure with the words under it.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// File name, with its ending.
-    pub file: &'static str,
-    /// How to read it.
-    pub caption: String,
-    /// The drawing.
-    pub drawing: Svg,
-}
-
 /// The figures of a run, in the order of the report. What was not recorded has
 /// no figure.
 #[must_use]
 pub fn figures(run: &Run<'_>) -> Vec<Figure> {
     let mut figures = vec![task_error(run), external_torque(run), joint_angles(run)];
+    figures.extend(limits::figures(run));
     figures.extend(priority_leak(run));
     figures.extend(conditioning(run));
     figures.extend(hand_force(run));
     figures.extend(path(run));
     figures.extend(arm(run));
     figures
-}
-
-/// A chart of this run.
-fn chart(run: &Run<'_>, id: &str, what: &str, description: &str) -> Chart {
-    let title = format!("{what} \u{2013} {}", run.label());
-    run.chart(id, title, description)
-}
-
-/// A chart as a figure; the caption goes on with what is shaded: " Shaded: contacts A
-/// to D.", or nothing.
-fn figure(run: &Run<'_>, file: &'static str, caption: &str, chart: &Chart) -> Figure {
-    let shaded = match run.bands().as_slice() {
-        [] => String::new(),
-        [one] => format!(" Shaded: contact {}.", one.label),
-        [first, .., last] => format!(" Shaded: contacts {} to {}.", first.label, last.label),
-    };
-    Figure {
-        file,
-        caption: format!("{caption}{shaded}"),
-        drawing: chart.draw(),
-    }
 }
 
 /// A panel per level: its axis is titled `what` where there is one level only.
@@ -97,7 +69,7 @@ fn task_error(run: &Run<'_>) -> Figure {
     });
     let mut explained = "No limit is set for this plant and these contacts.";
     for (index, panel) in chart.panels.iter_mut().enumerate() {
-        panel.limits = limits(run, index);
+        panel.limits = acceptance(run, index);
         if !panel.limits.is_empty() {
             explained = "Broken lines: limits of the largest error, of its rms and of its \
                          plateau, as labelled.";
@@ -111,7 +83,7 @@ fn task_error(run: &Run<'_>) -> Figure {
 }
 
 /// The acceptance limits of a level as lines.
-fn limits(run: &Run<'_>, level: usize) -> Vec<LimitLine> {
+fn acceptance(run: &Run<'_>, level: usize) -> Vec<LimitLine> {
     let levels = &run.scenario.levels;
     let unit = run.summary.levels[level].unit().suffix();
     let mine = run.summary.acceptance.iter().filter_map(|acceptance| {

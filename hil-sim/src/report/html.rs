@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::svg::{Svg, escape};
 use super::ticks::plain;
-use super::{Run, diagram, figures, palette, settings, tables};
+use super::{Run, diagram, figures, limits, palette, settings, tables};
 use crate::summary::{Summary, Verdict};
 use cell::names::{Named, Switch};
 use cell::scenario::Scenario;
@@ -21,6 +21,9 @@ pub fn run_report(run: &Run<'_>) -> String {
     section(&mut body, "Task levels", &tables::levels(run));
     section(&mut body, "Contacts", &tables::contacts(run));
     section(&mut body, "Figures", &drawings(run));
+    if let Some(tables) = limits::tables(run) {
+        section(&mut body, "Limits met", &tables);
+    }
     section(&mut body, "Joints, observer, limits", &tables::joints(run));
     if let Some(link) = &run.summary.link {
         section(&mut body, "Link", &tables::link(link));

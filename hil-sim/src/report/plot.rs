@@ -1,12 +1,13 @@
 //! Line charts: panels on top of each other that share the horizontal axis,
 //! lettered bands over all of them, limits, and a legend outside the data.
 
+mod bars;
 mod chart;
 mod decimate;
 mod layout;
 mod range;
 
-pub use chart::{Band, Chart, LimitLine, Mark, Panel, Scale, Series, Stroke, Style};
+pub use chart::{Band, Chart, LimitLine, Mark, Panel, Scale, Series, Strip, Stroke, Style};
 pub use decimate::decimate;
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use cell::scenario::{EquippedArm, Scenario};
 use record::channel::{Channel, Value};
 use record::run::{CHANNELS, LEVEL_CHANNELS, Sample};
 
+use super::met::Met;
 use super::plot::{Series, Style};
 use crate::arm_points::outline;
 use crate::contact::Contacts;
@@ -45,6 +46,7 @@ pub struct Recording {
     snapshots_due: Vec<f64>,
     arm: EquippedArm,
     plant: PlantModel,
+    met: Met,
     /// Postures at the start and while the contacts press.
     pub arms: Vec<ArmSnapshot>,
 }
@@ -103,6 +105,7 @@ impl Recording {
             has_hands: !scenario.hands.is_empty(),
             snapshots_due: snapshot_times(scenario, contacts),
             plant: PlantModel::new(&arm.parameters),
+            met: Met::new(levels, scenario.duration_s, scenario.cycle_s()),
             arm,
             arms: Vec::new(),
         }
@@ -111,9 +114,13 @@ impl Recording {
     /// Adds a cycle.
     pub fn push(&mut self, sample: &Sample) {
         self.block_t.push(sample.t_s);
+        if let Some(limits) = &sample.limits {
+            self.met.add(sample.t_s, limits);
+        }
         let mut columns = self.block.iter_mut();
         let mut put = |name: &str, value: Value| {
             let number = match value {
+                Value::Count(count) => count as f64,
                 Value::Number(number) if name != "hand_force" || self.has_hands => number,
                 _ => f64::NAN,
             };
@@ -223,6 +230,48 @@ impl Recording {
     #[must_use]
     pub fn q_deg(&self, joint: usize) -> &[f64] {
         self.column("q{joint}", joint)
+    }
+
+    /// Speed of a joint \[rad/s\].
+    #[must_use]
+    pub fn dq(&self, joint: usize) -> &[f64] {
+        self.column("dq{joint}", joint)
+    }
+
+    /// Torque of a joint \[Nm\].
+    #[must_use]
+    pub fn torque(&self, joint: usize) -> &[f64] {
+        self.column("tau{joint}", joint)
+    }
+
+    /// When limits were met.
+    #[must_use]
+    pub fn met(&self) -> &Met {
+        &self.met
+    }
+
+    /// Exchanges of the projection; NaN without the law within limits.
+    #[must_use]
+    pub fn pivots(&self) -> &[f64] {
+        self.column("pivots", 0)
+    }
+
+    /// Share of what it asks for that the null space got; NaN without the law within limits.
+    #[must_use]
+    pub fn null_share(&self) -> &[f64] {
+        self.column("null_share", 0)
+    }
+
+    /// The same of a level.
+    #[must_use]
+    pub fn share(&self, level: usize) -> &[f64] {
+        self.level(level, "share{level}", 0)
+    }
+
+    /// Task acceleration that the bounds of the joints take from a level \[m/s2\].
+    #[must_use]
+    pub fn disturbance(&self, level: usize) -> &[f64] {
+        self.level(level, "disturbance{level}", 0)
     }
 
     /// |R_kk| of a task row \[1/sqrt(kg)\].

@@ -129,8 +129,12 @@ fn gain(gain: &AxisGain) -> String {
 fn reference(level: &LevelSpec) -> String {
     let turn = match &level.reference {
         ReferenceSpec::Hold {} => return "held".to_string(),
-        ReferenceSpec::Move { by_m, duration_s } => {
-            return format!("moved by ({}) m in {} s", list(by_m), plain(*duration_s));
+        ReferenceSpec::Move(straight) => {
+            return format!(
+                "moved by ({}) m in {} s",
+                list(&straight.by_m),
+                plain(straight.duration_s)
+            );
         }
         ReferenceSpec::ThereAndBack(motion) => {
             return format!(

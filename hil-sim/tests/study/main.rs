@@ -5,6 +5,7 @@ mod command;
 mod distribution;
 mod files;
 mod published;
+mod straight;
 
 use cell::names::PlantKind;
 use cell::scenario::EquippedArm;

@@ -1,5 +1,8 @@
 //! What a chart is.
 
+/// Height of a row of bars \[px\].
+pub const STRIP: f64 = 18.0;
+
 /// A chart of one or more panels.
 #[derive(Clone, Debug)]
 pub struct Chart {
@@ -36,6 +39,10 @@ pub struct Panel {
     pub series: Vec<Series>,
     /// Horizontal limits.
     pub limits: Vec<LimitLine>,
+    /// Rows of bars, from the top, in the place of lines and of the vertical axis.
+    pub strips: Vec<Strip>,
+    /// Bars along the upper and along the lower edge: intervals of the horizontal axis.
+    pub edges: [Vec<[f64; 2]>; 2],
     /// Whether each line's label also stands at its right end.
     pub end_labels: bool,
 }
@@ -47,6 +54,8 @@ pub enum Scale {
     Linear,
     /// Evenly, zero included.
     FromZero,
+    /// Evenly between these ends.
+    Within([f64; 2]),
     /// By powers of ten; smaller values are drawn at `floor` (above 0).
     Log {
         /// Smallest value that is told apart.
@@ -157,6 +166,17 @@ pub struct LimitLine {
     pub label: String,
 }
 
+/// A row of bars: when something was so.
+#[derive(Clone, Debug)]
+pub struct Strip {
+    /// What, to the left of it.
+    pub label: String,
+    /// Intervals of the horizontal axis.
+    pub spans: Vec<[f64; 2]>,
+    /// Colour of the palette, counted around.
+    pub colour: usize,
+}
+
 /// A shaded interval of the horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
@@ -205,7 +225,19 @@ impl Panel {
             scale,
             series,
             limits: Vec::new(),
+            strips: Vec::new(),
+            edges: [Vec::new(), Vec::new()],
             end_labels: false,
+        }
+    }
+
+    /// A panel with these rows of bars.
+    #[must_use]
+    pub fn of_strips(strips: Vec<Strip>) -> Self {
+        Self {
+            height: STRIP * strips.len() as f64,
+            strips,
+            ..Self::new("", 0.0, Scale::Linear, Vec::new())
         }
     }
 
@@ -223,7 +255,7 @@ impl Panel {
     /// Whether no line has anything to draw.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.series.iter().all(Series::is_empty)
+        self.series.iter().all(Series::is_empty) && self.strips.is_empty()
     }
 
     /// Whether the vertical axis is logarithmic.

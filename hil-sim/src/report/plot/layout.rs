@@ -5,6 +5,7 @@
 
 use super::super::svg::{Anchor, Svg, text_width};
 use super::super::ticks::Ticks;
+use super::bars;
 use super::chart::{Chart, Panel, Style};
 use super::decimate::decimate;
 use super::range::{self, Axis};
@@ -121,7 +122,11 @@ fn draw_panel(
         svg.rect("band", [from, top], [(to - from).max(0.6), panel.height]);
     }
     let across = x.ticks(80.0);
-    let up = y.ticks(TICK_STEP);
+    // Rows of bars have no vertical axis.
+    let up = match panel.strips.as_slice() {
+        [] => y.ticks(TICK_STEP),
+        _ => Ticks::default(),
+    };
     grid(svg, &across, &up, frame, &y, [top, bottom]);
     for (from, to) in visible_bands(chart, frame) {
         svg.line("edge", [from, top], [from, bottom]);
@@ -130,6 +135,8 @@ fn draw_panel(
     for (value, text) in &up.major {
         svg.text("m", [left - 7.0, y.pixel(*value) + 4.0], Anchor::End, text);
     }
+    bars::strips(svg, panel, &x, [left, right], top);
+    bars::edges(svg, panel, &x, [left, right], [top, bottom]);
     if last {
         for (value, text) in &across.major {
             svg.line(
@@ -314,8 +321,13 @@ fn letters(chart: &Chart, frame: &Frame) -> Vec<Letter> {
 fn left_margin(chart: &Chart) -> f64 {
     let widths = chart.panels.iter().flat_map(|panel| {
         let axis = Axis::of(panel, [panel.height, 0.0]);
-        let ticks = axis.ticks(TICK_STEP).major;
-        ticks.into_iter().map(|(_, text)| text_width(&text, FONT))
+        let texts: Vec<_> = match panel.strips.as_slice() {
+            [] => (axis.ticks(TICK_STEP).major.into_iter())
+                .map(|(_, text)| text)
+                .collect(),
+            strips => strips.iter().map(|strip| strip.label.clone()).collect(),
+        };
+        texts.into_iter().map(|text| text_width(&text, FONT))
     });
     widths.fold(24.0, f64::max) + 34.0
 }

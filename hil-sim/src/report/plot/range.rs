@@ -105,6 +105,9 @@ pub fn horizontal(given: Option<[f64; 2]>, panels: &[Panel]) -> [f64; 2] {
 }
 
 fn vertical(panel: &Panel) -> [f64; 2] {
+    if let Scale::Within(ends) = panel.scale {
+        return ends;
+    }
     let values = || {
         panel
             .series

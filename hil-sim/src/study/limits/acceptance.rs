@@ -31,7 +31,7 @@ const SMALL_STEP_SHARE: f64 = 0.8;
 
 /// Steps of a torque by which a straight arm may leave \[Nm\], on the ideal plant and on the realistic
 /// one, whose noise alone makes 2.2 Nm in an arm that is straight.
-const STRAIGHT_STEP_NM: [f64; 2] = [2.0, 3.0];
+pub const STRAIGHT_STEP_NM: [f64; 2] = [2.0, 3.0];
 
 /// A level is back below this on the realistic plant \[mm\]: what friction costs a flange.
 const STRAIGHT_BACK_MM: f64 = 2.0;
@@ -254,6 +254,17 @@ fn gives_way(runs: &[Outcome], exact: &[Outcome]) -> Vec<Criterion> {
     vec![below(what, percentile(&differences, 1.0), 1e-3)]
 }
 
+/// A straight arm that is pulled back and stays there.
+fn pulled_back(run: &Outcome) -> Vec<Criterion> {
+    let mut all = vec![below("torque step Nm", run.step.nm, STRAIGHT_STEP_NM[0])];
+    for (number, level) in (1..).zip(&run.levels) {
+        let unit = if level.turns { "mrad" } else { "mm" };
+        let what = format!("level {number}, error {unit} pulled back");
+        all.push(below(what, level.hold.unwrap_or(f64::INFINITY), BACK));
+    }
+    all
+}
+
 /// What single scenarios must keep.
 fn ordered(runs: &[Outcome], precision: Precision) -> Vec<Criterion> {
     runs.iter()
@@ -314,6 +325,11 @@ fn one_ordered(run: &Outcome, precision: Precision) -> Vec<Criterion> {
                 below("level 2, error mrad at the end", end(1), BACK),
             ]
         }
+        "straight-back"
+        | "straight-back-orientation"
+        | "straight-back-below-orientation"
+        | "upright-back"
+        | "bent-1-back-wrist" => pulled_back(run),
         _ => Vec::new(),
     };
     if !all.is_empty() {
