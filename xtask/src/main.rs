@@ -7,6 +7,7 @@
 mod arm;
 mod bench;
 mod board;
+mod docs;
 mod figures;
 mod fri;
 mod fri_check;
@@ -58,6 +59,10 @@ same-bytes BASE [NEW] [--ignore PART]...
                        given. CSV columns and JSON paths with PART in their name may
                        differ
 
+docs [DOCUMENT]...     commands of README, CONTRIBUTING and docs/*.md: each runs in a copy of the
+                       workspace, exits with 0 and prints what the document shows, or
+                       docs/commands.txt says why not
+
 rooms                  every crate's files in the layers of docs/rooms.txt, none using one
                        above it, and none in a circle
 rooms --graph CRATE    which file uses what of which other file";
@@ -82,6 +87,7 @@ fn main() -> ExitCode {
         ["lines", revision] => lines::run(Some(revision)),
         ["missing-m7"] => tools::find(&[QEMU, LLVM]).map(|()| true),
         ["same-bytes", ref words @ ..] => same_bytes::run(words),
+        ["docs", ref words @ ..] => docs::run(words),
         ["rooms", ref words @ ..] => rooms::run(words),
         _ => Err(Trouble::usage(USAGE.into())),
     };
