@@ -44,6 +44,8 @@ place stratum-config.cmake "$prefix/lib/cmake/stratum"
 place stratum-config-version.cmake "$prefix/lib/cmake/stratum"
 mkdir -p "$prefix/include"
 cp controller-capi/include/stratum.h "$prefix/include/"
-controller-capi/isolate.sh "${CARGO_TARGET_DIR:-target}/${target:+$target/}release/libstratum.a" \
+# Wherever cargo is told to build.
+built=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
+controller-capi/isolate.sh "$built/${target:+$target/}release/libstratum.a" \
   "$prefix/lib/libstratum.a" 'stratum_*'
 echo "stratum $version, $precision, in $prefix"
