@@ -1,16 +1,14 @@
 //! The monitor of the link: counters on both sides, and whether it carries a motion.
 
-use fri::sequence::{Arrival, Receiver, Sender};
-
-use crate::wire::Incoming;
+use crate::protocol::{Arrival, Clock};
 
 /// A counter that is ahead by more than this is no loss but another sender, or a
 /// damaged datagram that has passed its check.
-const JUMP_MAX: u16 = 1000;
+const JUMP_MAX: u64 = 1000;
 
 /// A gap of more than this is believed when the next datagram confirms it: a cycle more
 /// is lost then, and a damaged counter alone moves nothing.
-const GAP_MAX: u16 = 100;
+const GAP_MAX: u64 = 100;
 
 /// How long the link must have been sound at the end of a motion \[s\].
 const SOUND_S: f64 = 1.0;
@@ -21,15 +19,14 @@ const RESYNC: u8 = 10;
 
 /// Counters and their gaps.
 #[derive(Clone, Debug)]
-pub(crate) struct LinkMonitor {
-    receiver: Receiver,
-    sender: Sender,
+pub(crate) struct LinkMonitor<C> {
+    clock: C,
     /// Datagrams in a row that were not fresh.
     stale: u8,
     /// The last counter, if it was too far ahead to be believed.
-    outlier: Option<u16>,
+    outlier: Option<u64>,
     /// What the robot mirrored last.
-    reflected: u16,
+    mirrored: Option<u64>,
     /// Cycles since that changed.
     unheard: u16,
     /// Cycles since the last trouble, those in this spell of command state.
@@ -41,14 +38,13 @@ pub(crate) struct LinkMonitor {
     pub bad_cycles: u32,
 }
 
-impl LinkMonitor {
-    pub const fn new() -> Self {
+impl<C: Clock> LinkMonitor<C> {
+    pub fn new() -> Self {
         Self {
-            receiver: Receiver::new(),
-            sender: Sender::starting_at(1),
+            clock: C::default(),
             stale: 0,
             outlier: None,
-            reflected: 0,
+            mirrored: None,
             unheard: 0,
             clean: 0,
             calm: u32::MAX,
@@ -59,33 +55,35 @@ impl LinkMonitor {
 
     /// Accepts any counter next.
     pub fn resync(&mut self) {
-        self.receiver.reset();
+        self.clock.reset();
     }
 
-    /// Measurements lost before this one; none if it is not to be answered.
-    pub fn arrival(&mut self, incoming: &Incoming<'_>) -> Option<u16> {
-        let known = self.receiver;
+    /// Measurements lost before this one; none if it is not to be answered. `mirrored` is
+    /// what the robot says of the last command that it has.
+    pub fn arrival(&mut self, counter: u64, mirrored: Option<u64>) -> Option<u16> {
+        let known = self.clock;
         let mut probe = known;
-        let mut arrival = probe.receive(incoming.counter);
+        let mut arrival = probe.receive(counter);
         if matches!(arrival, Arrival::Next { lost } if lost > JUMP_MAX) {
             arrival = Arrival::Old;
             probe = known;
         }
-        self.receiver = probe;
+        self.clock = probe;
         let lost = match arrival {
             Arrival::First => 0,
-            Arrival::Next { lost } if lost > GAP_MAX && !self.confirms(incoming.counter) => {
-                self.receiver = known;
-                self.outlier = Some(incoming.counter);
+            Arrival::Next { lost } if lost > GAP_MAX && !self.confirms(counter) => {
+                self.clock = known;
+                self.outlier = Some(counter);
                 return None;
             }
-            Arrival::Next { lost } => lost,
+            // At most JUMP_MAX.
+            Arrival::Next { lost } => lost as u16,
             Arrival::Repeated => return None,
             Arrival::Old => {
                 self.stale += 1;
                 if self.stale >= RESYNC {
                     self.stale = 0;
-                    self.receiver.reset();
+                    self.clock.reset();
                 }
                 return None;
             }
@@ -93,26 +91,29 @@ impl LinkMonitor {
         self.stale = 0;
         self.outlier = None;
         let passed = lost.saturating_add(1);
-        self.unheard = if incoming.reflected == self.reflected {
+        self.unheard = if mirrored == self.mirrored {
             self.unheard.saturating_add(passed)
         } else {
             0
         };
-        self.reflected = incoming.reflected;
+        self.mirrored = mirrored;
         Some(lost)
     }
 
     /// Whether a counter goes on from the one that was not believed.
-    fn confirms(&self, counter: u16) -> bool {
-        let ahead = self.outlier.map(|outlier| counter.wrapping_sub(outlier));
-        ahead.is_some_and(|ahead| (1..=GAP_MAX).contains(&ahead))
+    fn confirms(&self, counter: u64) -> bool {
+        self.outlier.is_some_and(|outlier| {
+            let mut from = C::default();
+            from.receive(outlier);
+            matches!(from.receive(counter), Arrival::Next { lost } if lost < GAP_MAX)
+        })
     }
 
     /// Judges the link in this cycle: bad when more than `limit` measurements were
     /// lost or commands are not heard, good again after `resume` clean cycles.
     pub fn judge(&mut self, lost: u16, limit: u16, resume: u16) -> bool {
         // A robot that mirrors nothing says nothing about what it hears.
-        let deaf = self.unheard > limit && self.reflected != 0;
+        let deaf = self.unheard > limit && self.mirrored.is_some();
         if lost > limit || deaf {
             if !self.bad {
                 self.bad_cycles = 0;
@@ -150,10 +151,5 @@ impl LinkMonitor {
         self.bad = false;
         self.clean = 0;
         self.unheard = 0;
-    }
-
-    /// The counter of an answer.
-    pub fn answer(&mut self) -> u16 {
-        self.sender.advance()
     }
 }

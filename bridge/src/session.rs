@@ -21,34 +21,33 @@ mod report;
 use controller_core::arm::ArmParameters;
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::fault::Mode;
-use controller_core::joint::{DOF, JointState, JointVector, zeros};
+use controller_core::joint::{JointState, JointVector, zeros};
 use controller_core::ranges::{HOLD_S, INTERVAL_FACTORS};
 use controller_core::real::Real;
 use controller_core::task::trajectory::quintic;
-use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, State};
+use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, State, Step};
 
 use crate::audit::Audit;
 use crate::belief::Belief;
 use crate::link_monitor::LinkMonitor;
-use crate::sent::SentTorques;
+use crate::protocol::{Incoming, Order, Outgoing, Protocol};
 use crate::source::ReferenceSource;
-use crate::wire::{Incoming, Outgoing, measured};
 
 pub use self::config::{RobotAdds, SessionConfig};
 pub use self::report::{CycleReport, Outcome, Phase, StopReason};
-pub use crate::wire::{ANSWER_LEN, RobotState};
 
-/// The session: configuration, controller, and everything that changes.
+/// The session: our end of the robot's protocol, configuration, controller, and everything
+/// that changes.
 #[derive(Clone, Debug)]
-pub struct Session {
+pub struct Session<P: Protocol> {
+    protocol: P,
     config: SessionConfig,
     controller: Option<Controller<f64>>,
     state: State<f64>,
     velocity: VelocityEstimator<f64>,
-    sent: SentTorques,
     /// q_d of the last cycle with one \[rad\].
     posture: JointVector<f64>,
-    link: LinkMonitor,
+    link: LinkMonitor<P::Clock>,
     belief: Belief,
     phase: Phase,
     stop: Option<StopReason>,
@@ -66,23 +65,23 @@ pub struct Session {
     /// Those of them in which the controller still brakes an arm with a fault.
     braked: u64,
     /// Where the robot's own stiffness holds the arm, once it does \[rad\].
-    hold: Option<[f32; DOF]>,
+    hold: Option<JointVector<f64>>,
     /// What the robot added in the last cycle \[Nm\].
     robot_part: JointVector<f64>,
     cycle_s: f64,
-    last: Option<CycleReport>,
+    last: Option<CycleReport<P::Robot>>,
 }
 
-impl Session {
+impl<P: Protocol> Session<P> {
     /// Waiting for the first datagram.
     #[must_use]
-    pub fn new(config: SessionConfig) -> Self {
+    pub fn new(protocol: P, config: SessionConfig) -> Self {
         Self {
+            protocol,
             config,
             controller: None,
             state: State::new(),
             velocity: VelocityEstimator::new(CORNER_HZ),
-            sent: SentTorques::new(),
             posture: zeros(),
             link: LinkMonitor::new(),
             belief: Belief::default(),
@@ -100,6 +99,12 @@ impl Session {
             cycle_s: 0.0,
             last: None,
         }
+    }
+
+    /// Our end of the robot's protocol.
+    #[must_use]
+    pub fn protocol(&self) -> &P {
+        &self.protocol
     }
 
     /// The arm that the controller believes in.
@@ -134,7 +139,7 @@ impl Session {
 
     /// The last answered cycle.
     #[must_use]
-    pub fn last(&self) -> Option<&CycleReport> {
+    pub fn last(&self) -> Option<&CycleReport<P::Robot>> {
         self.last.as_ref()
     }
 
@@ -183,14 +188,14 @@ impl Session {
         &mut self,
         datagram: &[u8],
         source: &mut impl ReferenceSource,
-        answer: &mut [u8; ANSWER_LEN],
-    ) -> Outcome {
-        let incoming = match Incoming::read(datagram) {
+        answer: &mut P::Answer,
+    ) -> Outcome<P::Error> {
+        let incoming = match self.protocol.read(datagram) {
             Ok(incoming) => incoming,
             Err(error) => return Outcome::Rejected(error),
         };
         let before = self.link.clone();
-        let Some(lost) = self.link.arrival(&incoming) else {
+        let Some(lost) = self.link.arrival(incoming.counter, incoming.mirrored) else {
             return Outcome::Stale;
         };
         if self.doubts(&incoming, lost) {
@@ -204,23 +209,25 @@ impl Session {
         self.cycle += 1 + u64::from(lost);
 
         let interval_s = self.cycle_s * f64::from(1 + u32::from(lost));
-        let joints = self.velocity.update(&incoming.q, interval_s);
-        let acted = self
-            .sent
-            .acted(incoming.reflected, self.config.controller.dead_cycles);
+        let joints = match incoming.dq {
+            Some(dq) => JointState { q: incoming.q, dq },
+            None => self.velocity.update(&incoming.q, interval_s),
+        };
+        let dead_cycles = self.config.controller.dead_cycles;
+        let acted = self.protocol.acted(&incoming, dead_cycles);
         self.advance_phase(&incoming, lost, source);
         self.watch_model(&incoming);
 
-        let holding = self.hold.is_some() && incoming.robot.takes_torque();
-        let outgoing = if self.phase.is_in_command() || holding || self.config.dry {
+        let holding = self.hold.is_some() && incoming.takes_torque;
+        let (step, order) = if self.phase.is_in_command() || holding || self.config.dry {
             self.state.set_applied_torque(&(acted + self.robot_part));
             self.control(&incoming, joints, interval_s, source)
         } else {
-            Outgoing::mirror(&incoming)
+            (None, Order::Nothing)
         };
-        let counter = self.link.answer();
-        self.sent.send(counter, outgoing.torque());
-        outgoing.write(answer, counter, &incoming, self.wish());
+        let wish = self.wish();
+        let outgoing = Outgoing { step, order, wish };
+        let sent = self.protocol.answer(&incoming, &outgoing, answer);
         self.last = Some(CycleReport {
             phase: self.phase,
             t_s: self.time_s(),
@@ -228,14 +235,14 @@ impl Session {
             lost,
             robot: incoming.robot,
             joints,
-            step: outgoing.step,
-            sent: outgoing.torque(),
+            step,
+            sent,
         });
         Outcome::Answered
     }
 
     /// Whether the arm cannot be where this measurement says, lost ones before it or not.
-    fn doubts(&mut self, incoming: &Incoming, lost: u16) -> bool {
+    fn doubts(&mut self, incoming: &Incoming<'_, P>, lost: u16) -> bool {
         let interval_s = self.cycle_s * (1.0 + f64::from(lost));
         self.last.is_some_and(|last| {
             let way = incoming.q - last.joints.q;
@@ -246,7 +253,7 @@ impl Session {
 
     /// Makes the controller for the robot's cycle, again if that changes before
     /// command state.
-    fn take_cycle(&mut self, incoming: &Incoming) -> Result<(), ConfigError> {
+    fn take_cycle(&mut self, incoming: &Incoming<'_, P>) -> Result<(), ConfigError> {
         let period = incoming.period_s.unwrap_or(self.config.controller.cycle_s);
         let known = self.controller.is_some() && period == self.cycle_s;
         if known || self.first_command.is_some() {
@@ -272,13 +279,18 @@ impl Session {
         (self.cycle - first_command) as i64 - settle
     }
 
-    fn advance_phase(&mut self, incoming: &Incoming, lost: u16, source: &mut impl ReferenceSource) {
+    fn advance_phase(
+        &mut self,
+        incoming: &Incoming<'_, P>,
+        lost: u16,
+        source: &mut impl ReferenceSource,
+    ) {
         let all = cycles(self.config.duration_s, self.cycle_s);
         let over = match self.first_command {
             None => self.config.dry && self.cycle as i64 > all,
             Some(first) => self.cycles_since(first) >= all,
         };
-        if !incoming.robot.takes_torque() || self.config.dry {
+        if !incoming.takes_torque || self.config.dry {
             let carried = self.config.dry || self.phase.is_in_command();
             self.leave_command();
             if over {
@@ -355,7 +367,7 @@ impl Session {
     }
 
     /// Command state begins: rest here, torque from zero.
-    fn enter_command(&mut self, incoming: &Incoming, source: &mut impl ReferenceSource) {
+    fn enter_command(&mut self, incoming: &Incoming<'_, P>, source: &mut impl ReferenceSource) {
         let Some(controller) = &self.controller else {
             return;
         };
@@ -390,25 +402,25 @@ impl Session {
     }
 
     /// Compares models at first, then now and then.
-    fn watch_model(&mut self, incoming: &Incoming) {
+    fn watch_model(&mut self, incoming: &Incoming<'_, P>) {
         if let Some(controller) = &self.controller
             && self.cycle % AUDIT_EVERY == 1
         {
-            self.audit
-                .compare(controller, &self.config.flange, &incoming.model());
+            let robot = self.protocol.model(incoming);
+            self.audit.compare(controller, &self.config.flange, &robot);
         }
     }
 
     /// The control cycle.
     fn control(
         &mut self,
-        incoming: &Incoming,
+        incoming: &Incoming<'_, P>,
         joints: JointState<f64>,
         interval_s: f64,
         source: &mut impl ReferenceSource,
-    ) -> Outgoing {
+    ) -> (Option<Step<f64>>, Order) {
         let Some(controller) = &self.controller else {
-            return Outgoing::mirror(incoming);
+            return (None, Order::Nothing);
         };
         let now = self.first_command.map(|first| self.cycles_since(first));
         let t_s = now.map(|now| now as f64 * self.cycle_s);
@@ -441,14 +453,19 @@ impl Session {
             RobotAdds::GravityAndCoriolis => step.gravity + step.coriolis,
         };
         if self.config.dry {
-            return Outgoing::look_on(incoming, step);
+            return (Some(step), Order::LookOn);
         }
         let torque = (step.torque - self.robot_part) * self.ramp();
-        let stiffness = self.stiffness_share();
-        if stiffness > 0.0 && self.hold.is_none() {
-            self.hold = Some(measured(incoming));
+        let share = self.stiffness_share();
+        if share > 0.0 && self.hold.is_none() {
+            self.hold = Some(incoming.q);
         }
-        Outgoing::command(incoming, step, &torque, self.hold.as_ref(), stiffness)
+        let order = Order::Torque {
+            torque,
+            hold: self.hold,
+            share,
+        };
+        (Some(step), order)
     }
 
     /// Share of the torque that is sent, 0 to 1.

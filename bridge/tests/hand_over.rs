@@ -2,7 +2,8 @@
 //! nobody told the controller of. Nothing of it may show at time 0.
 
 use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session, SessionConfig};
 use bridge::source::ReferenceSource;
 use controller_core::arm::ArmModel;
 use controller_core::arm::dynamics::Dynamics;
@@ -56,7 +57,7 @@ struct Robot {
     /// Torques on their way, the next one last.
     way: Vec<JointVector<f64>>,
     measurement: Measurement,
-    session: Session,
+    session: Session<Lwr>,
     source: Straight,
 }
 
@@ -92,7 +93,7 @@ impl Robot {
             },
             way: vec![JointVector::zeros(); dead_cycles.into()],
             measurement,
-            session: Session::new(config),
+            session: Session::new(Lwr::new(), config),
             source: Straight(Reference::hold(0, [0.0; 7])),
         }
     }

@@ -2,7 +2,8 @@
 
 use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use bridge::audit::Agreement;
-use bridge::session::{ANSWER_LEN, Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, RobotAdds, Session, SessionConfig, StopReason};
 use bridge::source::ReferenceSource;
 use controller_core::arm::ArmModel;
 use controller_core::arm::dynamics::Dynamics;
@@ -62,19 +63,19 @@ impl ReferenceSource for Wanted {
 
 /// A robot that does not move.
 /// What the levels and the posture follow.
-fn followed(session: &Session) -> Reference<f64> {
+fn followed(session: &Session<Lwr>) -> Reference<f64> {
     let controller = session.controller().expect("a first datagram");
     controller.followed_reference(session.state())
 }
 
 struct Robot {
     measurement: Measurement,
-    session: Session,
+    session: Session<Lwr>,
     source: Wanted,
 }
 
 impl Robot {
-    fn new(session: Session) -> Self {
+    fn new(session: Session<Lwr>) -> Self {
         let model = ArmModel::<f64>::new(&LWR_IV).expect("the built-in arm");
         let q = JointVector::from(START.map(|q| f64::from(q as f32)));
         let state = JointState {
@@ -118,7 +119,7 @@ impl Robot {
     }
 
     /// The same datagram again.
-    fn send(&mut self) -> (Outcome, Option<Command>) {
+    fn send(&mut self) -> (Outcome<fri::Error>, Option<Command>) {
         let (mut bytes, mut answer) = ([0; Measurement::LEN], [0; ANSWER_LEN]);
         self.measurement.emit(&mut bytes);
         let outcome = self.session.receive(&bytes, &mut self.source, &mut answer);
@@ -150,7 +151,7 @@ impl Robot {
 
 #[test]
 fn before_command_state_it_mirrors_what_the_robot_commands() {
-    let mut robot = Robot::new(Session::new(config(1.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(1.0)));
     assert_eq!(robot.session.phase(), Phase::Waiting);
     for _ in 0..200 {
         let answer = robot.cycle().expect("an answer");
@@ -172,7 +173,7 @@ fn before_command_state_it_mirrors_what_the_robot_commands() {
 
 #[test]
 fn the_torque_grows_from_zero_and_contains_no_gravity() {
-    let mut robot = Robot::new(Session::new(config(10.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(10.0)));
     robot.enter();
     let mut before = [0.0f32; 7];
     for cycle in 0..2000 {
@@ -220,7 +221,7 @@ fn the_torque_grows_from_zero_and_contains_no_gravity() {
 fn coriolis_torque_is_left_out_where_the_robot_adds_it() {
     let mut settings = config(10.0);
     settings.robot_adds = RobotAdds::GravityAndCoriolis;
-    let mut robot = Robot::new(Session::new(settings));
+    let mut robot = Robot::new(Session::new(Lwr::new(), settings));
     robot.enter();
     robot.cycles(600);
     for cycle in 0..50 {
@@ -237,7 +238,7 @@ fn coriolis_torque_is_left_out_where_the_robot_adds_it() {
 
 #[test]
 fn repeated_overtaken_and_bad_datagrams_get_no_answer() {
-    let mut robot = Robot::new(Session::new(config(10.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(10.0)));
     robot.enter();
     robot.cycles(700);
     assert_eq!(robot.send().0, Outcome::Stale, "repeated");
@@ -256,7 +257,7 @@ fn repeated_overtaken_and_bad_datagrams_get_no_answer() {
 
 #[test]
 fn a_jump_of_the_counter_is_believed_only_when_it_stays() {
-    let mut robot = Robot::new(Session::new(config(10.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(10.0)));
     robot.cycles(20);
     let counter = robot.measurement.header.counter;
     // A damaged counter: one datagram goes without an answer, the next has one.
@@ -273,7 +274,7 @@ fn a_jump_of_the_counter_is_believed_only_when_it_stays() {
 /// Well-formed, and nothing that an arm can do: as if that measurement had been lost.
 #[test]
 fn one_position_that_cannot_be_is_a_lost_cycle() {
-    let mut robot = Robot::new(Session::new(config(60.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(60.0)));
     robot.enter();
     robot.cycles(1000);
     let here = robot.measurement.joint_position;
@@ -293,7 +294,7 @@ fn one_position_that_cannot_be_is_a_lost_cycle() {
 
 #[test]
 fn one_counter_far_ahead_is_a_lost_cycle_and_a_gap_that_stays_holds_the_arm() {
-    let mut robot = Robot::new(Session::new(config(60.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(60.0)));
     robot.enter();
     robot.cycles(1000);
     let counter = robot.measurement.header.counter;
@@ -314,7 +315,7 @@ fn one_counter_far_ahead_is_a_lost_cycle_and_a_gap_that_stays_holds_the_arm() {
 #[test]
 fn the_motion_is_over_only_on_a_sound_link() {
     for (trouble, reason) in [(400, StopReason::Link), (900, StopReason::Done)] {
-        let mut robot = Robot::new(Session::new(config(1.0)));
+        let mut robot = Robot::new(Session::new(Lwr::new(), config(1.0)));
         robot.enter();
         robot.cycles(1000 - trouble);
         robot.measurement.header.counter += 6;
@@ -324,7 +325,7 @@ fn the_motion_is_over_only_on_a_sound_link() {
         assert_eq!(robot.session.stop_reason(), Some(reason), "{trouble}");
     }
     // Not even in command state when it should have ended.
-    let mut robot = Robot::new(Session::new(config(1.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(1.0)));
     robot.enter();
     robot.cycles(700);
     robot.measurement.state = InterfaceState::Monitor;
@@ -334,7 +335,7 @@ fn the_motion_is_over_only_on_a_sound_link() {
 
 #[test]
 fn a_gap_holds_the_arm_and_the_motion_is_joined_again() {
-    let mut robot = Robot::new(Session::new(config(60.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(60.0)));
     robot.enter();
     robot.cycles(1000);
     assert_eq!(robot.session.phase(), Phase::Moving);
@@ -360,7 +361,7 @@ fn a_gap_holds_the_arm_and_the_motion_is_joined_again() {
 
 #[test]
 fn commands_that_are_not_heard_hold_the_arm_and_end_the_session() {
-    let mut robot = Robot::new(Session::new(config(60.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(60.0)));
     robot.enter();
     robot.cycles(1000);
     let heard = robot.measurement.header.reflected;
@@ -381,7 +382,7 @@ fn commands_that_are_not_heard_hold_the_arm_and_end_the_session() {
 
 #[test]
 fn at_the_end_the_robot_gets_its_stiffness_back() {
-    let mut robot = Robot::new(Session::new(config(0.5)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(0.5)));
     robot.enter();
     let mut stiffness = 0.0f32;
     let mut cycles = 0;
@@ -407,7 +408,7 @@ fn at_the_end_the_robot_gets_its_stiffness_back() {
 
 #[test]
 fn a_fault_of_the_controller_gives_the_arm_to_the_robot() {
-    let mut robot = Robot::new(Session::new(config(60.0)));
+    let mut robot = Robot::new(Session::new(Lwr::new(), config(60.0)));
     robot.enter();
     robot.cycles(1000);
     // Joint 7 at 0.5 rad in a cycle: no arm does that. Twice it is a damaged datagram.
@@ -460,7 +461,7 @@ fn a_target_of_another_kind_is_a_fault_and_never_followed() {
     for (targets, kind, part) in cases {
         // 600: following for 0.2 s. 900: held before, and joining with it.
         for (cycles, held) in [(600, false), (900, true)] {
-            let mut robot = Robot::new(Session::new(two_kinds()));
+            let mut robot = Robot::new(Session::new(Lwr::new(), two_kinds()));
             robot.enter();
             robot.cycles(cycles);
             if held {
@@ -492,7 +493,7 @@ fn a_target_of_another_kind_is_a_fault_and_never_followed() {
 
 #[test]
 fn a_level_that_holds_stays_where_it_came_to_rest() {
-    let mut robot = Robot::new(Session::new(two_kinds()));
+    let mut robot = Robot::new(Session::new(Lwr::new(), two_kinds()));
     robot.enter();
     robot.cycles(600);
     let before = followed(&robot.session);
@@ -511,7 +512,7 @@ fn dry_it_computes_and_moves_nothing() {
     let mut settings = config(1.0);
     settings.dry = true;
     settings.duration_s = 60.0;
-    let mut robot = Robot::new(Session::new(settings));
+    let mut robot = Robot::new(Session::new(Lwr::new(), settings));
     robot.enter();
     for _ in 0..2000 {
         let answer = robot.cycle().expect("an answer");

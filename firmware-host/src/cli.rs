@@ -9,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use bridge::lwr::{Lwr, RobotState};
 use bridge::session::{Phase, RobotAdds, Session, SessionConfig};
 use bridge::source::ReferenceSource;
 use cell::arguments::usage;
@@ -210,7 +211,7 @@ impl RunOptions {
         let realtime = Realtime::ask(self.cpu);
         tell(realtime.line());
         tell(format_args!("waiting for the robot at {}", self.listen));
-        let mut session = Session::new(config);
+        let mut session = Session::new(Lwr::new(), config);
         let mut end = Endpoint {
             socket,
             peer: self.peer,
@@ -293,7 +294,7 @@ impl RunOptions {
     }
 
     /// Files and the closing lines.
-    fn report(&self, summary: &Summary, flight: &Flight) -> Result<(), Invalid> {
+    fn report(&self, summary: &Summary, flight: &Flight<RobotState>) -> Result<(), Invalid> {
         if let Some(path) = &self.summary {
             let json = serde_json::to_string_pretty(summary).map_err(Invalid::line)?;
             std::fs::write(path, json + "\n").map_err(|error| unwritable(path, &error))?;

@@ -7,22 +7,23 @@ use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
+use bridge::protocol::Report;
 use bridge::session::CycleReport;
 use record::csv::Row;
-use record::session::CHANNELS;
+use record::session::channels;
 
 /// Cycles that fit into the queue: 8 s at 2 ms.
 const QUEUE: usize = 4096;
 
-/// The loop's end of the queue, and the thread behind it.
+/// The loop's end of the queue, and the thread behind it; robots say `R` of themselves.
 #[derive(Debug)]
-pub struct Recorder {
-    queue: Option<SyncSender<CycleReport>>,
+pub struct Recorder<R> {
+    queue: Option<SyncSender<CycleReport<R>>>,
     writer: Option<JoinHandle<io::Result<()>>>,
     dropped: u64,
 }
 
-impl Recorder {
+impl<R: Report + Send + 'static> Recorder<R> {
     /// Waits for cycles. The file at `path` is made with the first of them: a robot
     /// that never comes leaves an older record as it is.
     ///
@@ -42,7 +43,7 @@ impl Recorder {
     }
 
     /// Hands over a cycle; never waits.
-    pub fn push(&mut self, cycle: &CycleReport) {
+    pub fn push(&mut self, cycle: &CycleReport<R>) {
         let full = (self.queue.as_ref()).is_none_or(|queue| queue.try_send(*cycle).is_err());
         self.dropped += u64::from(full);
     }
@@ -62,7 +63,7 @@ impl Recorder {
     }
 }
 
-fn write_all(path: &Path, cycles: &Receiver<CycleReport>) -> io::Result<()> {
+fn write_all<R: Report>(path: &Path, cycles: &Receiver<CycleReport<R>>) -> io::Result<()> {
     let Ok(first) = cycles.recv() else {
         return Ok(());
     };
@@ -75,15 +76,16 @@ fn write_all(path: &Path, cycles: &Receiver<CycleReport>) -> io::Result<()> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_rows(
+pub fn write_rows<R: Report>(
     out: &mut impl Write,
-    cycles: impl Iterator<Item = CycleReport>,
+    cycles: impl Iterator<Item = CycleReport<R>>,
 ) -> io::Result<()> {
+    let channels = channels();
     let mut row = Row::default();
-    row.names(CHANNELS, 0, &[]);
+    row.names(&channels, 0, &[]);
     row.finish(out)?;
     for cycle in cycles {
-        row.values(CHANNELS, &cycle);
+        row.values(&channels, &cycle);
         row.finish(out)?;
     }
     Ok(())

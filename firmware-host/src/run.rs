@@ -6,7 +6,8 @@ use std::net::{SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use bridge::session::{ANSWER_LEN, CycleReport, Outcome, Phase, Session};
+use bridge::lwr::{ANSWER_LEN, Lwr, RobotState};
+use bridge::session::{CycleReport, Outcome, Phase, Session};
 use bridge::source::ReferenceSource;
 use cell::terminal::tell;
 use controller_core::joint::Vector3;
@@ -89,10 +90,10 @@ struct Tracking {
 /// The socket fails.
 pub fn converse(
     end: &mut Endpoint<'_>,
-    session: &mut Session,
+    session: &mut Session<Lwr>,
     source: &mut impl ReferenceSource,
-    mut recorder: Option<&mut Recorder>,
-    mut each: impl FnMut(&Session, &CycleReport),
+    mut recorder: Option<&mut Recorder<RobotState>>,
+    mut each: impl FnMut(&Session<Lwr>, &CycleReport<RobotState>),
 ) -> io::Result<Counts> {
     let mut counts = Counts::default();
     let (mut bytes, mut answer) = ([0; BUFFER], [0; ANSWER_LEN]);
@@ -198,7 +199,7 @@ impl Counts {
         *self.link.rejected.entry(reason.to_string()).or_default() += 1;
     }
 
-    fn add(&mut self, session: &Session, cycle: &CycleReport, tasks: &TaskSet) {
+    fn add(&mut self, session: &Session<Lwr>, cycle: &CycleReport<RobotState>, tasks: &TaskSet) {
         self.answered += 1;
         self.link.lost += u64::from(cycle.lost);
         for (phase, count) in PHASES.iter().zip(&mut self.phases) {
@@ -223,7 +224,7 @@ impl Counts {
     #[must_use]
     pub fn summary(
         &self,
-        session: &Session,
+        session: &Session<Lwr>,
         scenario: &str,
         names: &[String],
         realtime: &Realtime,

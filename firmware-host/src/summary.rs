@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use bridge::audit::{Agreement, Audit};
-use bridge::session::{Phase, RobotState, Session, StopReason};
+use bridge::lwr::{Lwr, RobotState};
+use bridge::session::{Phase, Session, StopReason};
 use fri::{ControlScheme, InterfaceState};
 use serde::Serialize;
 
@@ -165,7 +166,7 @@ impl std::fmt::Display for Obstacle {
 
 /// Exit code and reason of a session that has ended, or of one that never began.
 #[must_use]
-pub fn ending(session: &Session) -> (u8, String) {
+pub fn ending(session: &Session<Lwr>) -> (u8, String) {
     match (session.stop_reason(), session.phase()) {
         (_, Phase::Waiting) => (4, "no robot: no measurement arrived".into()),
         (Some(StopReason::Done), _) => (0, "the motion is over".into()),

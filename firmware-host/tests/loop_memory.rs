@@ -5,7 +5,8 @@ use std::net::UdpSocket;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session};
 use cell::names::PlantKind;
 use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::recorder::Recorder;
@@ -23,9 +24,9 @@ fn scenario() -> Scenario {
     scenario
 }
 
-fn session(scenario: &Scenario) -> Session {
+fn session(scenario: &Scenario) -> Session<Lwr> {
     let config = scenario.session_config(0, scenario.duration_s);
-    Session::new(config.expect("a good scenario"))
+    Session::new(Lwr::new(), config.expect("a good scenario"))
 }
 
 /// Every measurement of a run.

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 use std::time::Duration;
 
+use bridge::lwr::Lwr;
 use bridge::session::Session;
 use cell::names::PlantKind;
 use cell::realtime::Realtime;
@@ -87,7 +88,7 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
         stop: &stop,
         tasks: config.controller.tasks,
     };
-    let mut session = Session::new(config);
+    let mut session = Session::new(Lwr::new(), config);
     let mut source = ScenarioSource::new(scenario);
     let counts = converse(&mut end, &mut session, &mut source, None, |_, _| {});
     let names = ["flange".to_string()];

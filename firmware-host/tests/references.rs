@@ -7,7 +7,8 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session};
 use bridge::source::ReferenceSource;
 use cell::names::PlantKind;
 use cell::realtime::Realtime;
@@ -46,9 +47,9 @@ fn tasks(scenario: &Scenario) -> TaskSet {
     config.expect("a good scenario").tasks
 }
 
-fn session(scenario: &Scenario) -> Session {
+fn session(scenario: &Scenario) -> Session<Lwr> {
     let config = scenario.session_config(0, scenario.duration_s);
-    Session::new(config.expect("a good scenario"))
+    Session::new(Lwr::new(), config.expect("a good scenario"))
 }
 
 fn robot(scenario: &Scenario) -> Robot {
@@ -67,7 +68,7 @@ fn robot(scenario: &Scenario) -> Robot {
 fn run(
     scenario: &Scenario,
     source: &mut impl ReferenceSource,
-    mut each: impl FnMut(f64, &Session, &Robot),
+    mut each: impl FnMut(f64, &Session<Lwr>, &Robot),
 ) {
     let (mut robot, mut session) = (robot(scenario), session(scenario));
     let (mut measurement, mut answer) = ([0; MEASUREMENT_BYTES], [0; ANSWER_LEN]);
@@ -155,7 +156,7 @@ impl ReferenceSource for Planner {
 }
 
 /// What the levels and the posture follow.
-fn followed(session: &Session) -> Reference<f64> {
+fn followed(session: &Session<Lwr>) -> Reference<f64> {
     let controller = session.controller().expect("a first datagram");
     controller.followed_reference(session.state())
 }

@@ -2,7 +2,8 @@
 //! in between: the FRI session of the `bridge` crate without a PC.
 
 use arms::{LWR_IV, LWR_IV_FLANGE};
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session, SessionConfig};
 use bridge::source::ReferenceSource;
 use bridge::transport::DatagramLink;
 use controller_core::joint::zeros;
@@ -88,7 +89,7 @@ pub enum Event {
 
 /// Session, link and interlock.
 pub struct InterlockedSession<L, E, D, H> {
-    session: Session,
+    session: Session<Lwr>,
     source: FixedScenarioSource,
     link: L,
     interlock: Interlock<E, D, H>,
@@ -110,7 +111,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> InterlockedSessio
         silence_s: f64,
     ) -> Self {
         Self {
-            session: Session::new(config),
+            session: Session::new(Lwr::new(), config),
             source,
             link,
             interlock,
@@ -122,7 +123,7 @@ impl<L: DatagramLink, E: InputPin, D: OutputPin, H: OutputPin> InterlockedSessio
 
     /// The conversation.
     #[must_use]
-    pub fn session(&self) -> &Session {
+    pub fn session(&self) -> &Session<Lwr> {
         &self.session
     }
 

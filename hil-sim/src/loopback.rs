@@ -5,7 +5,8 @@
 
 use std::io;
 
-use bridge::session::{ANSWER_LEN, Outcome, Session, SessionConfig};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Session, SessionConfig};
 
 use crate::interrupt;
 use crate::link::{Expect, Fault, LockStep, Peer};
@@ -17,7 +18,7 @@ use record::run::Sample;
 #[derive(Debug)]
 pub struct BridgeClient {
     /// The conversation.
-    pub session: Session,
+    pub session: Session<Lwr>,
     source: ScenarioSource,
 }
 
@@ -26,7 +27,7 @@ impl BridgeClient {
     #[must_use]
     pub fn new(config: SessionConfig, scenario: &Scenario) -> Self {
         Self {
-            session: Session::new(config),
+            session: Session::new(Lwr::new(), config),
             source: ScenarioSource::new(scenario),
         }
     }
@@ -58,7 +59,7 @@ pub fn run(
     robot: &mut Robot,
     client: &mut BridgeClient,
     faults: &[Fault],
-    mut sink: impl FnMut(&Sample, &Session) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample, &Session<Lwr>) -> io::Result<()>,
 ) -> io::Result<()> {
     let cycle_s = robot.setup().scenario.cycle_s();
     let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);

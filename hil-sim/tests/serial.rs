@@ -3,7 +3,8 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session};
 use cell::names::PlantKind;
 use cell::scenario::{Scenario, ScenarioSource};
 use hil_sim::loopback::{self, BridgeClient};
@@ -34,7 +35,7 @@ fn robot(scenario: &Scenario) -> Robot {
 /// were damaged.
 fn converse(port: SerialPort, scenario: &Scenario) -> (Phase, u64) {
     let config = scenario.session_config(0, scenario.duration_s);
-    let mut session = Session::new(config.expect("a good scenario"));
+    let mut session = Session::new(Lwr::new(), config.expect("a good scenario"));
     let mut source = ScenarioSource::new(scenario);
     let mut line = Serial::on(port);
     let mut answer = [0; ANSWER_LEN];

@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use bridge::session::{ANSWER_LEN, Outcome, Session};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Session};
 use cell::scenario::{Scenario, ScenarioSource};
 use fri::{Command, Flags, InterfaceState, Measurement, MeasurementPacket};
 use serde_json::Value;
@@ -149,7 +150,7 @@ fn bridge(socket: &UdpSocket, duration_s: f64, stop: &AtomicBool) {
     scenario.duration_s = duration_s;
     let config = scenario.session_config(0, duration_s).expect("a session");
     let mut source = ScenarioSource::new(&scenario);
-    let mut session = Session::new(config);
+    let mut session = Session::new(Lwr::new(), config);
     let (mut bytes, mut answer) = ([0; 2000], [0; ANSWER_LEN]);
     while !stop.load(Ordering::Relaxed) {
         let Ok((length, robot)) = socket.recv_from(&mut bytes) else {

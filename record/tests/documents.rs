@@ -1,5 +1,6 @@
 //! The tables of docs/files.md are the channels.
 
+use bridge::lwr::RobotState;
 use record::channel::Channel;
 use record::{run, session};
 
@@ -13,7 +14,7 @@ fn the_tables_of_the_document_are_the_channels() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/files.md");
     let text = std::fs::read_to_string(path).expect("the document");
     let run = [table(run::CHANNELS), table(run::LEVEL_CHANNELS)].concat();
-    for table in [run, table(session::CHANNELS)] {
+    for table in [run, table(&session::channels::<RobotState>())] {
         let rows = table.join("\n");
         assert!(text.contains(&rows), "docs/files.md has to contain\n{rows}");
     }

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
-use bridge::session::{ANSWER_LEN, Outcome, Phase, Session, SessionConfig};
+use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::session::{Outcome, Phase, Session, SessionConfig};
 use bridge::source::ReferenceSource;
 use controller_core::law::null_space::NullDamping;
 use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
@@ -72,7 +73,7 @@ impl ReferenceSource for Rest {
     }
 }
 
-fn session() -> Session {
+fn session() -> Session<Lwr> {
     let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
     let controller = ControllerConfig {
         tasks: TaskSet::new(&[flange]).expect("a task that can be"),
@@ -84,10 +85,13 @@ fn session() -> Session {
         cycle_s: 0.002,
         dead_cycles: 0,
     };
-    Session::new(SessionConfig {
-        doubted_max: 2,
-        ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6)
-    })
+    Session::new(
+        Lwr::new(),
+        SessionConfig {
+            doubted_max: 2,
+            ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6)
+        },
+    )
 }
 
 fn measurement() -> Measurement {

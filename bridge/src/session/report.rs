@@ -3,8 +3,6 @@
 use controller_core::joint::{JointState, JointVector};
 use controller_core::{ConfigError, Step};
 
-use super::RobotState;
-
 /// Where the conversation stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -64,11 +62,11 @@ pub enum StopReason {
 
 /// What became of a datagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum Outcome<E> {
     /// It is answered.
     Answered,
     /// It is not a measurement that can be used: no answer.
-    Rejected(fri::Error),
+    Rejected(E),
     /// It was answered before, or is older than one that was: no answer.
     Stale,
     /// No arm can be where it says, so soon after the last one: no answer. Several in a
@@ -78,19 +76,19 @@ pub enum Outcome {
     Unusable(ConfigError),
 }
 
-/// One answered cycle.
+/// One answered cycle with a robot that says `R` of itself.
 #[derive(Clone, Copy, Debug)]
-pub struct CycleReport {
+pub struct CycleReport<R> {
     /// Where the conversation stands.
     pub phase: Phase,
     /// Scenario time \[s\]; before 0 while the arm settles. Zero before command state.
     pub t_s: f64,
     /// Counter of the measurement.
-    pub counter: u16,
+    pub counter: u64,
     /// Measurements lost just before this one.
     pub lost: u16,
     /// What the robot says of itself.
-    pub robot: RobotState,
+    pub robot: R,
     /// Measured position \[rad\] and estimated speed \[rad/s\].
     pub joints: JointState<f64>,
     /// The controller's cycle; none where it did not run.

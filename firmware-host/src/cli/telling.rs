@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
+use bridge::lwr::{Lwr, RobotState};
+use bridge::protocol::Report;
 use bridge::session::{CycleReport, Phase, Session};
 use cell::invalid::Invalid;
 use cell::terminal::tell;
@@ -56,18 +58,18 @@ pub(super) fn place(path: &Path) -> std::io::Result<PathBuf> {
 }
 
 /// The last cycles, in a ring that is taken once.
-pub(super) struct Flight {
-    cycles: VecDeque<CycleReport>,
+pub(super) struct Flight<R> {
+    cycles: VecDeque<CycleReport<R>>,
 }
 
-impl Flight {
+impl<R: Report> Flight<R> {
     pub(super) fn new() -> Self {
         Self {
             cycles: VecDeque::with_capacity(FLIGHT),
         }
     }
 
-    pub(super) fn push(&mut self, cycle: &CycleReport) {
+    pub(super) fn push(&mut self, cycle: &CycleReport<R>) {
         if self.cycles.len() == FLIGHT {
             self.cycles.pop_front();
         }
@@ -103,7 +105,7 @@ impl Teller {
         }
     }
 
-    pub(super) fn tell(&mut self, session: &Session, cycle: &CycleReport) {
+    pub(super) fn tell(&mut self, session: &Session<Lwr>, cycle: &CycleReport<RobotState>) {
         let obstacle = Obstacle::of(&cycle.robot);
         if obstacle != self.obstacle {
             self.obstacle = obstacle;
