@@ -1,4 +1,4 @@
-//! Constructor and cycle of the core and the codec of the FCI link without any panic, and the check
+//! Constructor and cycle of the core, codec and robot of the FCI link without any panic, and the check
 //! notices one.
 
 use crate::tools::{Outcome, find, good, host, image_build};
@@ -11,12 +11,14 @@ pub fn run() -> Outcome {
     find(&[])?;
     let output = image_build("panic-free", "").output()?;
     if String::from_utf8_lossy(&output.stderr).contains(SYMBOL) {
-        println!("a panic is reachable from the constructor, the cycle or the codec of the FCI");
+        println!(
+            "a panic is reachable from the constructor, the cycle, the codec or the robot of the FCI"
+        );
         return Ok(false);
     }
     good("build of the image panic-free", &output)?;
     println!(
-        "constructor and cycle, 1 to 7 rows, f64 and f32; codec of the FCI: linked without a panic"
+        "constructor and cycle, 1 to 7 rows, f64 and f32; codec and robot of the FCI: linked without a panic"
     );
 
     let output = image_build("panic-free", "provoke-panic").output()?;

@@ -1,5 +1,5 @@
 //! Proof that constructor and cycle cannot panic, those of the controller and of the
-//! velocity-level resolver, and that the codec of the FCI cannot: on the target the panic handler calls a function that does
+//! velocity-level resolver, and that codec and robot's end of the FCI cannot: on the target the panic handler calls a function that does
 //! not exist, so that this image links only if no panic is reachable from one to seven
 //! task rows in either precision. There is no allocator either. On the host it runs what
 //! it links.
@@ -17,7 +17,7 @@ use controller_core::{
 };
 use fci::state::{FIELDS, LEN_MAX, StatePacket};
 use fci::stream::REQUEST_LEN_MAX;
-use fci::{Command, Reply, Request, RobotErrors, Sequence, Stream, Version, command};
+use fci::{Command, Reply, Request, RobotErrors, Sequence, Stream, Version, command, robot};
 use firmware::log::Number;
 use firmware::scenario::{self, FixedScenario};
 
@@ -130,6 +130,38 @@ fn exercise_codec(version: Version) -> bool {
     numbers && same && errors.is_empty() && fresh && answered && requests == 1
 }
 
+/// The robot's end of the FCI with bytes, an arm and a person that nobody knows; whether a robot that
+/// nobody has connected to holds its arm.
+fn exercise_robot(version: Version) -> bool {
+    let settings = robot::Settings::new(black_box(version), robot::Limits::FR3);
+    let mut robot = robot::Robot::new(black_box(settings), black_box(&b"<robot/>"[..]));
+    let arm = black_box(robot::Arm {
+        q: [0.5; 7],
+        dq: [0.0; 7],
+        tau_j: [0.0; 7],
+        tau_ext: [0.0; 7],
+        wrench: [0.0; 6],
+        o_t_f: robot::IDENTITY,
+        twist: [0.0; 6],
+        theta: [0.5; 7],
+        dtheta: [0.0; 7],
+    });
+    let mut bytes = black_box(&[2, 0, 0, 0, 7, 0, 0, 0, 12, 0, 0, 0][..]);
+    while let Ok(Some(handled)) = robot.receive(&mut bytes) {
+        black_box(handled);
+    }
+    let mut room = [0; 64];
+    let said = robot.replies(black_box(&mut room));
+    let mut room = [0; LEN_MAX];
+    let state = robot.state(&arm, &black_box(robot::Operator::ABSENT));
+    black_box(state.emit(version, &mut room).is_ok());
+    black_box(robot.command(black_box(&room)));
+    let held = robot.advance() == robot::Drive::Hold;
+    black_box((robot.load(), robot.ended(), robot.waits(), robot.mode()));
+    robot.disconnect();
+    held && said == 0
+}
+
 /// Both precisions, every number of rows; every version.
 #[cfg_attr(target_os = "none", unsafe(no_mangle))]
 #[allow(unsafe_code)] // the name of the entry
@@ -145,14 +177,14 @@ extern "C" fn exercise_all() -> bool {
             & exercise::<T, 6>()
             & exercise::<T, 7>()
     }
-    let versions = Version::ALL.map(exercise_codec);
+    let versions = Version::ALL.map(|version| exercise_codec(version) & exercise_robot(version));
     precision::<f64>() & precision::<f32>() & versions.into_iter().all(|it| it)
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
     if exercise_all() {
-        println!("1 to 7 rows, f64 and f32; codec of the FCI: built and run");
+        println!("1 to 7 rows, f64 and f32; codec and robot of the FCI: built and run");
         0.into()
     } else {
         eprintln!("a controller was refused, its cycle was not clean or a message was not taken");

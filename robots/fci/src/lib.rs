@@ -13,7 +13,8 @@
 //! - [`stream`]: messages in a stream of bytes that comes in any pieces ([`Stream`]);
 //! - [`request`] and [`reply`]: what they say ([`Request`], [`Reply`]), each written and read,
 //!   so that both ends of the connection can be made of them;
-//! - [`sequence`]: which states count.
+//! - [`sequence`]: which states count;
+//! - [`robot`]: the robot's end as a state machine, without sockets, clocks or an arm.
 //!
 //! What can be read is read, bit by bit; whether its numbers can be used is a second question:
 //! [`StatePacket::check_finite`], [`Command::check`], [`Request::check`]. Nothing here panics
@@ -32,6 +33,7 @@ mod listed;
 pub mod modes;
 pub mod reply;
 pub mod request;
+pub mod robot;
 pub mod robot_error;
 pub mod sequence;
 pub mod state;

@@ -61,6 +61,19 @@ enum Progress {
     Lost(usize),
 }
 
+impl Stream<[u8; REQUEST_LEN_MAX]> {
+    /// A stream of requests at its beginning: longer messages are errors.
+    #[must_use]
+    pub const fn of_requests() -> Self {
+        Self {
+            buffer: [0; REQUEST_LEN_MAX],
+            size_max: REQUEST_LEN_MAX,
+            seen: 0,
+            state: Progress::Partial,
+        }
+    }
+}
+
 impl<B: AsRef<[u8]> + AsMut<[u8]>> Stream<B> {
     /// A stream at its beginning. Of messages that are longer than the buffer the end is
     /// skipped; `size_max` is what a header may say at most, for a robot the length of its

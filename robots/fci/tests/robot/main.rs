@@ -1,0 +1,8 @@
+//! The robot's end, course by course: what the state shows and what replies say.
+
+mod bench;
+mod connection;
+mod courses;
+mod hostile;
+mod limits;
+mod setters;
