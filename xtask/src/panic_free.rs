@@ -1,4 +1,4 @@
-//! Constructor and cycle of the core, codec and robot of the FCI link without any panic, and the check
+//! Constructor and cycle of the core, codec, robot and client of the FCI link without any panic, and the check
 //! notices one.
 
 use crate::tools::{Outcome, find, good, host, image_build};
@@ -12,13 +12,13 @@ pub fn run() -> Outcome {
     let output = image_build("panic-free", "").output()?;
     if String::from_utf8_lossy(&output.stderr).contains(SYMBOL) {
         println!(
-            "a panic is reachable from the constructor, the cycle, the codec or the robot of the FCI"
+            "a panic is reachable from the constructor, the cycle or from what there is of the FCI"
         );
         return Ok(false);
     }
     good("build of the image panic-free", &output)?;
     println!(
-        "constructor and cycle, 1 to 7 rows, f64 and f32; codec and robot of the FCI: linked without a panic"
+        "constructor and cycle, 1 to 7 rows, f64 and f32; codec, robot and client of the FCI: linked without a panic"
     );
 
     let output = image_build("panic-free", "provoke-panic").output()?;

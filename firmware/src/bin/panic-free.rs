@@ -1,5 +1,5 @@
 //! Proof that constructor and cycle cannot panic, those of the controller and of the
-//! velocity-level resolver, and that codec and robot's end of the FCI cannot: on the target the panic handler calls a function that does
+//! velocity-level resolver, and that codec and both ends of the FCI cannot: on the target the panic handler calls a function that does
 //! not exist, so that this image links only if no panic is reachable from one to seven
 //! task rows in either precision. There is no allocator either. On the host it runs what
 //! it links.
@@ -15,6 +15,7 @@ use controller_core::{
     Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
     TaskSet,
 };
+use fci::client::{Client, Duty, Facts, Start};
 use fci::state::{FIELDS, LEN_MAX, StatePacket};
 use fci::stream::REQUEST_LEN_MAX;
 use fci::{Command, Reply, Request, RobotErrors, Sequence, Stream, Version, command, robot};
@@ -162,6 +163,26 @@ fn exercise_robot(version: Version) -> bool {
     held && said == 0
 }
 
+/// The client's machine of the FCI with bytes and states that nobody knows; whether it says
+/// Connect and no state is answered before a motion.
+fn exercise_client() -> bool {
+    let mut client = Client::new(black_box(true));
+    client.connected(black_box(50_000));
+    let connect = client.transmit().len();
+    client.transmitted(black_box(connect));
+    client.receive(black_box(&[0, 0, 0, 0, 9, 0, 0, 0, 12, 0, 0, 0]), &mut ());
+    let duty = client.state(black_box(&Facts::default()));
+    client.start(black_box(&Start::uniform(20.0, 20.0)));
+    if client.wants_new_connection() {
+        client.halt();
+        client.closed();
+        client.silent();
+    }
+    client.finish();
+    let code = client.stopped().map(|stop| stop.exit_code());
+    connect == 16 && duty == Duty::Listen && client.strays() == 1 && code == Some(0)
+}
+
 /// Both precisions, every number of rows; every version.
 #[cfg_attr(target_os = "none", unsafe(no_mangle))]
 #[allow(unsafe_code)] // the name of the entry
@@ -178,16 +199,18 @@ extern "C" fn exercise_all() -> bool {
             & exercise::<T, 7>()
     }
     let versions = Version::ALL.map(|version| exercise_codec(version) & exercise_robot(version));
-    precision::<f64>() & precision::<f32>() & versions.into_iter().all(|it| it)
+    precision::<f64>() & precision::<f32>() & versions.into_iter().all(|it| it) & exercise_client()
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
     if exercise_all() {
-        println!("1 to 7 rows, f64 and f32; codec and robot of the FCI: built and run");
+        println!("1 to 7 rows, f64 and f32; codec, robot and client of the FCI: built and run");
         0.into()
     } else {
-        eprintln!("a controller was refused, its cycle was not clean or a message was not taken");
+        eprintln!(
+            "a controller was refused, its cycle was not clean or the FCI not as it should be"
+        );
         1.into()
     }
 }

@@ -14,7 +14,8 @@
 //! - [`request`] and [`reply`]: what they say ([`Request`], [`Reply`]), each written and read,
 //!   so that both ends of the connection can be made of them;
 //! - [`sequence`]: which states count;
-//! - [`robot`]: the robot's end as a state machine, without sockets, clocks or an arm.
+//! - [`robot`]: the robot's end as a state machine, without sockets, clocks or an arm;
+//! - [`client`]: the client's end of the connection over TCP, likewise.
 //!
 //! What can be read is read, bit by bit; whether its numbers can be used is a second question:
 //! [`StatePacket::check_finite`], [`Command::check`], [`Request::check`]. Nothing here panics
@@ -26,6 +27,7 @@
 extern crate std;
 
 mod bytes;
+pub mod client;
 pub mod command;
 mod error;
 pub mod kind;

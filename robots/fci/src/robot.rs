@@ -146,7 +146,7 @@ impl<M: AsRef<[u8]>> Robot<M> {
         };
         Self {
             model,
-            stream: Stream::of_requests(),
+            stream: Stream::with_room(REQUEST_LEN_MAX),
             replies: Replies::new(),
             client: Client::Silent,
             broken: None,

@@ -28,6 +28,19 @@ pub struct Message<'a> {
     pub skipped: usize,
 }
 
+/// Bytes of a payload, as they come: of a message that is longer than any buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece<'a> {
+    /// Code of the request: [`Kind::from_code`].
+    pub code: u32,
+    /// Id of the request.
+    pub id: u32,
+    /// Place of the first byte in the payload, from 0.
+    pub at: usize,
+    /// The bytes, at least one.
+    pub bytes: &'a [u8],
+}
+
 /// Finds the messages in a stream, whatever the pieces in which it comes.
 ///
 /// ```
@@ -61,13 +74,15 @@ enum Progress {
     Lost(usize),
 }
 
-impl Stream<[u8; REQUEST_LEN_MAX]> {
-    /// A stream of requests at its beginning: longer messages are errors.
+impl<const N: usize> Stream<[u8; N]> {
+    /// A stream at its beginning with a buffer of N bytes, into which a header must fit: see
+    /// [`Self::new`].
     #[must_use]
-    pub const fn of_requests() -> Self {
+    pub const fn with_room(size_max: usize) -> Self {
+        const { assert!(N >= HEADER_LEN) };
         Self {
-            buffer: [0; REQUEST_LEN_MAX],
-            size_max: REQUEST_LEN_MAX,
+            buffer: [0; N],
+            size_max,
             seen: 0,
             state: Progress::Partial,
         }
@@ -104,6 +119,19 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Stream<B> {
     /// A size of less than a header or more than allowed. The stream is of no use any more,
     /// and every later call says the same, until [`Self::reset`].
     pub fn next(&mut self, bytes: &mut &[u8]) -> Result<Option<Message<'_>>, Error> {
+        self.next_in_pieces(bytes, |_| ())
+    }
+
+    /// The same, and `piece` sees the bytes of the payload as they are taken: also those that
+    /// the buffer has no room for.
+    ///
+    /// # Errors
+    /// Those of [`Self::next`].
+    pub fn next_in_pieces(
+        &mut self,
+        bytes: &mut &[u8],
+        mut piece: impl FnMut(Piece<'_>),
+    ) -> Result<Option<Message<'_>>, Error> {
         if self.state == Progress::Complete {
             self.reset();
         }
@@ -120,7 +148,16 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Stream<B> {
             self.state = Progress::Lost(size);
             return Err(self.wrong(size));
         }
-        self.take(bytes, size);
+        let at = self.seen - HEADER_LEN;
+        let taken = self.take(bytes, size);
+        if !taken.is_empty() {
+            piece(Piece {
+                code,
+                id,
+                at,
+                bytes: taken,
+            });
+        }
         if self.seen < size {
             return Ok(None);
         }
@@ -141,11 +178,11 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Stream<B> {
         self.state = Progress::Partial;
     }
 
-    /// Takes bytes until so many of the message have come.
-    fn take(&mut self, bytes: &mut &[u8], until: usize) {
+    /// Takes bytes until so many of the message have come: those bytes.
+    fn take<'a>(&mut self, bytes: &mut &'a [u8], until: usize) -> &'a [u8] {
         let wanted = until.saturating_sub(self.seen).min(bytes.len());
         let Some((taken, rest)) = bytes.split_at_checked(wanted) else {
-            return;
+            return &[];
         };
         let places = self.buffer.as_mut().iter_mut().skip(self.seen);
         for (place, byte) in places.zip(taken) {
@@ -153,6 +190,7 @@ impl<B: AsRef<[u8]> + AsMut<[u8]>> Stream<B> {
         }
         self.seen += wanted;
         *bytes = rest;
+        taken
     }
 
     fn wrong(&self, found: usize) -> Error {
