@@ -4,7 +4,8 @@
 //! Bottom-up: [`invalid`], errors for people; [`terminal`], what is printed;
 //! [`ranges`], what may be asked for; [`names`], choices with a name; [`arguments`], values of
 //! options and usage errors; [`mod@file`] and [`reader`], texts and what they say; [`keys`], what
-//! keys of files are; [`arm`], an arm as a file; [`scenario`], an experiment as one. Beside them, of a program that has to keep a cycle:
+//! keys of files are; [`arm`], an arm as a file; [`model`], an arm as a URDF; [`scenario`], an
+//! experiment as a file. Beside them, of a program that has to keep a cycle:
 //! [`realtime`], what the system gives it, and [`timing`], how long things took.
 
 pub mod arguments;
@@ -13,6 +14,7 @@ pub mod document;
 pub mod file;
 pub mod invalid;
 pub mod keys;
+pub mod model;
 pub mod names;
 pub mod ranges;
 pub mod reader;

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use cell::model::chain::{Choice, Impossible};
 use controller_core::arm::{ArmModel, ArmParameters, Link};
 use controller_core::joint::{DOF, JointState, Matrix3};
-use hil_sim::model::chain::{Choice, Impossible};
 use hil_sim::model::import::{Import, Request, import};
 use serde::Deserialize;
 use stratum_tests::golden::{Worst, file};

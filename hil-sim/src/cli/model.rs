@@ -6,18 +6,19 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use controller_core::arm::{ArmModel, ArmParameters};
 
-use crate::model::agreement::{Agreement, Apart};
 use crate::model::c::c;
-use crate::model::chain::{Angles, Chain, Choice, Impossible};
 use crate::model::figures::Figures;
 use crate::model::import::{Request, import};
 use crate::model::rust::rust;
-use crate::model::urdf::Urdf;
+use crate::model::search::states;
 use cell::arguments::values::number;
 use cell::arm::robot::Robot;
 use cell::arm::text;
 use cell::file;
 use cell::invalid::Invalid;
+use cell::model::agreement::{Agreement, Apart};
+use cell::model::chain::{Angles, Chain, Choice, Impossible};
+use cell::model::urdf::Urdf;
 use cell::ranges::Range;
 use cell::terminal::{print, tell};
 
@@ -202,7 +203,7 @@ impl CheckOptions {
         let model = ArmModel::new(arm).map_err(Invalid::line)?;
         let agreement = |angles| {
             let chain = Chain::new(&urdf, &choice, angles)?;
-            Ok(Agreement::of(arm, &model, &chain, STATES))
+            Ok(Agreement::of(arm, &model, &chain, states(arm, STATES)))
         };
         let (printed, exact) = (agreement(Angles::AsPrinted)?, agreement(Angles::Exact)?);
         let row = |label: &str, cells: [String; 5]| {

@@ -3,15 +3,15 @@
 use controller_core::arm::{ArmModel, ArmParameters};
 use controller_core::joint::DOF;
 
-use super::agreement::Agreement;
-use super::chain::{Angles, Chain, Choice};
-use super::search::damping_postures;
-use super::urdf::Urdf;
+use super::search::{damping_postures, states};
 use cell::arm::file::OwnArm;
 use cell::arm::robot::{self, kept};
 use cell::arm::text;
 use cell::file::MOST;
 use cell::invalid::Invalid;
+use cell::model::agreement::Agreement;
+use cell::model::chain::{Angles, Chain, Choice};
+use cell::model::urdf::Urdf;
 
 /// States in which the table is held against the file.
 const STATES: usize = 1000;
@@ -75,7 +75,7 @@ pub fn import(text: &str, request: &Request<'_>) -> Result<Import, Invalid> {
     let named = kept(OwnArm::new(&numbers, &name, joints, postures));
     // As the file says it: angles of its degrees.
     let arm = robot::parse(&text::text(named, "")).map_err(of_table)?;
-    let agreement = Agreement::of(arm, &model_of(arm)?, &printed, STATES);
+    let agreement = Agreement::of(arm, &model_of(arm)?, &printed, states(arm, STATES));
     notes.push(of_right_angles(&chain, &agreement));
     let text = text::text(arm, &notes.join("\n"));
     if text.len() as u64 > MOST {

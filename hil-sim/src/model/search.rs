@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use controller_core::arm::{ArmModel, ArmParameters};
-use controller_core::joint::{DOF, JointMatrix};
+use controller_core::joint::{DOF, JointMatrix, JointState};
 use controller_core::law::sampling::{fastest_mode, mode_at};
 
 use crate::plant::noise::Rng;
@@ -41,6 +41,26 @@ pub fn drawn(arm: &ArmParameters, count: usize) -> Vec<[f64; DOF]> {
     let (mut rng, ranges) = (Rng::new(SEED, POSTURES), ranges(arm));
     let mut one = || ranges.map(|[min, max]| min + (max - min) * rng.uniform());
     (0..count).map(|_| one()).collect()
+}
+
+/// Seed and stream of [`states`].
+const STATES_SEED: [u64; 2] = [1, 20];
+
+/// So many random states within the ranges and speeds of an arm.
+pub fn states(arm: &ArmParameters, count: usize) -> impl Iterator<Item = JointState<f64>> {
+    let [seed, stream] = STATES_SEED;
+    let mut rng = Rng::new(seed, stream);
+    (0..count).map(move |_| {
+        let mut within = |[min, max]: [f64; 2]| min + (max - min) * rng.uniform();
+        let q = arm.links.map(|link| within(link.position_range));
+        let dq = arm
+            .links
+            .map(|link| within([-link.speed_limit, link.speed_limit]));
+        JointState {
+            q: q.into(),
+            dq: dq.into(),
+        }
+    })
 }
 
 /// The largest value that is found, and where \[rad\]: random postures, then random steps uphill

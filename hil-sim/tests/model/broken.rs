@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use hil_sim::model::chain::{Choice, Impossible};
+use cell::model::chain::{Choice, Impossible};
 use hil_sim::model::import::{Request, import};
 use proptest::prelude::*;
 

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use hil_sim::model::chain::{Choice, Impossible};
+use cell::model::chain::{Choice, Impossible};
 use hil_sim::model::import::{Request, import};
 
 /// A URDF of the golden data.

@@ -14,8 +14,8 @@ use controller_core::joint::{DOF, Matrix3, Vector3};
 
 use super::chain::{Chain, RIGHT_ANGLE_ERROR};
 use super::frame::Frame;
-use cell::arm::file::GRAVITY;
-use cell::arm::joint::{BRAKE_RATE, TORQUE_RATE};
+use crate::arm::file::GRAVITY;
+use crate::arm::joint::{BRAKE_RATE, TORQUE_RATE};
 
 /// Axes that are nearer cross \[m\]: a thousandth of a hair, a thousand roundings.
 const CROSSING: f64 = 1e-9;

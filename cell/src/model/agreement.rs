@@ -7,10 +7,6 @@ use controller_core::joint::{DOF, JointState, JointVector};
 
 use super::chain::Chain;
 use super::frame::Frame;
-use crate::plant::noise::Rng;
-
-/// Seed and stream of the states.
-const SEED: [u64; 2] = [1, 20];
 
 /// One quantity: the largest difference, and the largest entry of the chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +17,7 @@ pub struct Apart {
     pub size: f64,
 }
 
-/// Largest differences over random states.
+/// Largest differences over states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Agreement {
     /// M \[kg m2\], without rotors.
@@ -62,24 +58,18 @@ impl Apart {
 }
 
 impl Agreement {
-    /// Over `states` random states within the ranges and speeds of the arm.
+    /// Of the core's `model` of `arm` and a chain, over `states`: q \[rad\], dq \[rad/s\].
     #[must_use]
-    pub fn of(arm: &ArmParameters, model: &ArmModel<f64>, chain: &Chain, states: usize) -> Self {
-        let [seed, stream] = SEED;
-        let mut rng = Rng::new(seed, stream);
+    pub fn of(
+        arm: &ArmParameters,
+        model: &ArmModel<f64>,
+        chain: &Chain,
+        states: impl IntoIterator<Item = JointState<f64>>,
+    ) -> Self {
         let mut agreement = Self::default();
         let (mut kinematics, mut dynamics) = (Kinematics::new(), Dynamics::new());
         let rotor = JointVector::from(arm.links.map(|link| link.rotor_inertia));
-        for _ in 0..states {
-            let mut within = |[min, max]: [f64; 2]| min + (max - min) * rng.uniform();
-            let q = arm.links.map(|link| within(link.position_range));
-            let dq = arm
-                .links
-                .map(|link| within([-link.speed_limit, link.speed_limit]));
-            let state = JointState {
-                q: q.into(),
-                dq: dq.into(),
-            };
+        for state in states {
             kinematics.update(model, &state);
             dynamics.update(model, &kinematics, &state);
             let motion = chain.motion(&state.q, &state.dq, &arm.gravity.into());

@@ -8,9 +8,9 @@ use roxmltree::{Document, Node};
 
 use super::body::Body;
 use super::frame::Frame;
-use cell::arm::pose::rotation_of;
-use cell::invalid::Invalid;
-use cell::ranges::{
+use crate::arm::pose::rotation_of;
+use crate::invalid::Invalid;
+use crate::ranges::{
     AXIS_LENGTH, COULOMB_NM, INERTIA_KG_M2, LENGTH_M, LINK_MASS_KG, Range, VISCOUS_NMS,
 };
 

@@ -9,9 +9,9 @@ use super::body::{Body, Moved};
 use super::frame::Frame;
 use super::tree::Tree;
 use super::urdf::{Joint, Kind, Urdf};
-use cell::arm::pose::rotation_of;
-use cell::invalid::Invalid;
-use cell::ranges::{JOINT_SPEED_DEG_S, LINK_MASS_KG, POSITION_DEG, Range, TORQUE_NM};
+use crate::arm::pose::rotation_of;
+use crate::invalid::Invalid;
+use crate::ranges::{JOINT_SPEED_DEG_S, LINK_MASS_KG, POSITION_DEG, Range, TORQUE_NM};
 
 /// How far from a right angle \[rad\] one that is meant may be printed: 1.5708 is 3.7e-6 away.
 pub const RIGHT_ANGLE_ERROR: f64 = 2e-5;

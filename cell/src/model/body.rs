@@ -5,8 +5,8 @@ use controller_core::ranges::MASS_MIN;
 use nalgebra::SymmetricEigen;
 
 use super::frame::Frame;
-use cell::invalid::Invalid;
-use cell::ranges::LINK_MASS_KG;
+use crate::invalid::Invalid;
+use crate::ranges::LINK_MASS_KG;
 
 /// Share of the trace down to which a second moment may be negative: the rounding of printed
 /// numbers, as the core allows it.

@@ -3,7 +3,7 @@
 use controller_core::joint::DOF;
 
 use super::urdf::{Kind, Urdf};
-use cell::invalid::Invalid;
+use crate::invalid::Invalid;
 
 /// The links as a tree.
 pub struct Tree<'a> {
