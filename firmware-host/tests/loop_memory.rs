@@ -12,7 +12,7 @@ use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::recorder::Recorder;
 use firmware_host::run::{Endpoint, converse};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{LwrRobot, MEASUREMENT_BYTES, RobotOptions, RobotSetup};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
 #[global_allocator]
@@ -31,7 +31,7 @@ fn session(scenario: &Scenario) -> Session<Lwr> {
 
 /// Every measurement of a run.
 fn measurements(scenario: &Scenario) -> Vec<[u8; MEASUREMENT_BYTES]> {
-    let mut robot = Robot::new(RobotSetup {
+    let mut robot = LwrRobot::new(RobotSetup {
         scenario: scenario.clone(),
         plant: PlantKind::Realistic,
         contacts: true,

@@ -14,7 +14,7 @@ use firmware_host::run::{Endpoint, converse};
 use firmware_host::summary::Summary;
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{LinkFigures, LwrRobot, RobotOptions, RobotSetup};
 use hil_sim::serve::{Client, End, Operator, Service, Udp};
 use hil_sim::trace::Trace;
 
@@ -24,8 +24,8 @@ fn scenario(duration_s: f64) -> Scenario {
     scenario
 }
 
-fn robot(scenario: &Scenario, seed: u64) -> Robot {
-    Robot::new(RobotSetup {
+fn robot(scenario: &Scenario, seed: u64) -> LwrRobot {
+    LwrRobot::new(RobotSetup {
         scenario: scenario.clone(),
         plant: PlantKind::Realistic,
         contacts: true,

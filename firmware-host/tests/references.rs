@@ -23,7 +23,7 @@ use firmware_host::recorder;
 use firmware_host::run::{Endpoint, converse};
 use firmware_host::stream::{Setpoint, Stream};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{LwrRobot, MEASUREMENT_BYTES, RobotOptions, RobotSetup};
 
 /// Longer than any of these runs.
 const NEVER: Duration = Duration::from_secs(600);
@@ -52,8 +52,8 @@ fn session(scenario: &Scenario) -> Session<Lwr> {
     Session::new(Lwr::new(), config.expect("a good scenario"))
 }
 
-fn robot(scenario: &Scenario) -> Robot {
-    Robot::new(RobotSetup {
+fn robot(scenario: &Scenario) -> LwrRobot {
+    LwrRobot::new(RobotSetup {
         scenario: scenario.clone(),
         plant: PlantKind::Ideal,
         contacts: false,
@@ -68,7 +68,7 @@ fn robot(scenario: &Scenario) -> Robot {
 fn run(
     scenario: &Scenario,
     source: &mut impl ReferenceSource,
-    mut each: impl FnMut(f64, &Session<Lwr>, &Robot),
+    mut each: impl FnMut(f64, &Session<Lwr>, &LwrRobot),
 ) {
     let (mut robot, mut session) = (robot(scenario), session(scenario));
     let (mut measurement, mut answer) = ([0; MEASUREMENT_BYTES], [0; ANSWER_LEN]);

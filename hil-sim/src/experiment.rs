@@ -16,7 +16,7 @@ use crate::interrupt;
 use crate::loopback::{self, BridgeClient};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
-use crate::robot::{self, Driving, Robot, RobotOptions, RobotSetup};
+use crate::robot::{self, Driving, LwrRobot, RobotOptions, RobotSetup};
 use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
@@ -106,7 +106,7 @@ impl Experiment {
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
         let config = self.session().map_err(io::Error::other)?;
-        let mut robot = Robot::new(RobotSetup {
+        let mut robot = LwrRobot::new(RobotSetup {
             scenario: self.scenario.clone(),
             plant: self.plant,
             contacts: self.contacts,

@@ -10,7 +10,7 @@ use bridge::session::{Outcome, Session, SessionConfig};
 
 use crate::interrupt;
 use crate::link::{Expect, Fault, LockStep, Peer};
-use crate::robot::Robot;
+use crate::robot::{LwrBox, LwrRobot};
 use cell::scenario::{Scenario, ScenarioSource};
 use record::run::Sample;
 
@@ -33,7 +33,7 @@ impl BridgeClient {
     }
 }
 
-impl Peer for BridgeClient {
+impl Peer<LwrBox> for BridgeClient {
     fn exchange(
         &mut self,
         measurement: &[u8],
@@ -56,7 +56,7 @@ impl Peer for BridgeClient {
 /// # Errors
 /// Those of `sink`.
 pub fn run(
-    robot: &mut Robot,
+    robot: &mut LwrRobot,
     client: &mut BridgeClient,
     faults: &[Fault],
     mut sink: impl FnMut(&Sample, &Session<Lwr>) -> io::Result<()>,

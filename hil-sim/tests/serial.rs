@@ -9,7 +9,7 @@ use cell::names::PlantKind;
 use cell::scenario::{Scenario, ScenarioSource};
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{LwrRobot, RobotOptions, RobotSetup};
 use hil_sim::serve::{Client, End, Operator, Serial, Service, Transport};
 use hil_sim::trace::Trace;
 use serial2::SerialPort;
@@ -20,8 +20,8 @@ fn scenario() -> Scenario {
     scenario
 }
 
-fn robot(scenario: &Scenario) -> Robot {
-    Robot::new(RobotSetup {
+fn robot(scenario: &Scenario) -> LwrRobot {
+    LwrRobot::new(RobotSetup {
         scenario: scenario.clone(),
         plant: PlantKind::Realistic,
         contacts: true,

@@ -7,7 +7,7 @@ use cell::scenario::Scenario;
 use hil_sim::link::Fault;
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{LinkFigures, Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{LinkFigures, LwrRobot, RobotOptions, RobotSetup};
 
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
 
@@ -48,7 +48,7 @@ fn run(wish: &Wish<'_>) -> Run {
     let config = scenario.session_config(wish.dead_cycles as u8, scenario.duration_s);
     let config = config.expect("a good scenario");
     let mut client = BridgeClient::new(config, &scenario);
-    let mut robot = Robot::new(RobotSetup {
+    let mut robot = LwrRobot::new(RobotSetup {
         scenario,
         plant: wish.plant,
         contacts: wish.contacts,

@@ -13,7 +13,7 @@ use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
-    Krl, LinkFigures, RatingOptions, Robot, RobotAdds, RobotOptions, RobotSetup, scheme_named,
+    Krl, LinkFigures, LwrRobot, RatingOptions, RobotAdds, RobotOptions, RobotSetup, scheme_named,
 };
 use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
 use cell::arguments::values::{number, peer, processor, whole};
@@ -222,7 +222,7 @@ impl ServeOptions {
         ));
         notes::say_what_is_unknown(&scenario, setup.plant);
         let mut operator = Operator::at_the_terminal();
-        let mut robot = Robot::new(setup);
+        let mut robot = LwrRobot::new(setup);
         let mut sink = |instant: &Sample| files.push(instant);
         let realtime = (!service.lockstep).then(|| Realtime::ask_without_memory(self.cpu));
         if let Some(realtime) = &realtime {
@@ -294,7 +294,7 @@ impl ServeOptions {
         })
     }
 
-    fn setup(&self) -> Result<RobotSetup, Invalid> {
+    fn setup(&self) -> Result<RobotSetup<RobotOptions>, Invalid> {
         let mut scenario = Scenario::find(&self.scenario)?;
         scenario.duration_s = self.duration.unwrap_or(scenario.duration_s);
         // That of the scenario may be too short for the protocol.

@@ -5,7 +5,7 @@ use std::io;
 
 use super::channel::{Channel, Delivery};
 use super::fault::{Direction, Fault};
-use crate::robot::{MEASUREMENT_BYTES, Robot};
+use crate::robot::{ControlBox, Robot};
 
 /// How much of an answer a measurement can expect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +22,8 @@ pub enum Expect {
     Farewell,
 }
 
-/// A client, wherever it runs.
-pub trait Peer {
+/// A client of a robot with the control box `B`, wherever it runs.
+pub trait Peer<B> {
     /// Gives it a measurement; its answers go to `answers`, in their order. False
     /// where one was expected and none came, be it damaged or to another measurement:
     /// after [`Expect::Answer`] the client counts as gone.
@@ -73,16 +73,16 @@ impl LockStep {
     ///
     /// # Errors
     /// Those of the client's transport.
-    pub fn cycle(
+    pub fn cycle<B: ControlBox>(
         &mut self,
-        robot: &mut Robot,
-        client: &mut (impl Peer + ?Sized),
+        robot: &mut Robot<B>,
+        client: &mut (impl Peer<B> + ?Sized),
     ) -> io::Result<()> {
-        let mut measurement = [0; MEASUREMENT_BYTES];
+        let mut measurement = B::EMPTY;
         robot.measurement(&mut measurement);
         let mut answers = Vec::new();
         if !robot.has_begun() {
-            client.exchange(&measurement, Expect::First, &mut answers)?;
+            client.exchange(measurement.as_ref(), Expect::First, &mut answers)?;
             for answer in answers {
                 robot.command(&answer, 0.0);
             }
@@ -90,7 +90,7 @@ impl LockStep {
         }
         let (start, t_s) = (robot.robot_time_s(), robot.time_s());
         let end = (robot.cycle() + 1) as f64 * self.cycle_s;
-        self.to_client.send(start, t_s, &measurement);
+        self.to_client.send(start, t_s, measurement.as_ref());
         while let Some(arrived) = self.to_client.receive(end) {
             if self.gone {
                 continue;
@@ -108,20 +108,20 @@ impl LockStep {
         Ok(())
     }
 
-    /// The end: the robot leaves command state and says so, three times.
+    /// The end: the robot lets answers move it no more and says so, three times.
     ///
     /// # Errors
     /// Those of the client's transport.
-    pub fn finish(
+    pub fn finish<B: ControlBox>(
         &mut self,
-        robot: &mut Robot,
-        client: &mut (impl Peer + ?Sized),
+        robot: &mut Robot<B>,
+        client: &mut (impl Peer<B> + ?Sized),
     ) -> io::Result<()> {
         robot.leave();
-        let mut measurement = [0; MEASUREMENT_BYTES];
+        let mut measurement = B::EMPTY;
         for _ in 0..3 {
             robot.measurement(&mut measurement);
-            client.exchange(&measurement, Expect::Farewell, &mut Vec::new())?;
+            client.exchange(measurement.as_ref(), Expect::Farewell, &mut Vec::new())?;
         }
         Ok(())
     }

@@ -3,17 +3,12 @@
 use controller_core::Target;
 use controller_core::arm::ArmParameters;
 use controller_core::fault::Status;
-use controller_core::joint::{JointMatrix, JointState, JointVector};
-use fri::{InterfaceState, Quality};
+use controller_core::joint::JointVector;
 
+use super::control_box::{ControlBox, Seen};
 use super::counters::Counters;
-use super::driving::Pipe;
 use super::figures::Event;
-use super::inbox::Inbox;
-use super::krc::Krc;
 use super::model::RobotModel;
-use super::options::RobotOptions;
-use super::rating::Rating;
 use crate::after_fault::Ending;
 use crate::contact::{Contacts, PlacedPush};
 use crate::metrics::Metrics;
@@ -22,9 +17,9 @@ use crate::sample::{LevelProbes, Stop};
 use cell::names::PlantKind;
 use cell::scenario::{PointSpec, Push, Scenario};
 
-/// Which arm, which experiment, and how the robot behaves.
+/// Which arm, which experiment, and how the robot behaves: options `O` of its control box.
 #[derive(Clone, Debug)]
-pub struct RobotSetup {
+pub struct RobotSetup<O> {
     /// What is to be done: start, contacts, what is judged.
     pub scenario: Scenario,
     /// The arm.
@@ -36,22 +31,19 @@ pub struct RobotSetup {
     /// What the plant does beyond the reference.
     pub plant_options: PlantOptions,
     /// The robot's behaviour.
-    pub options: RobotOptions,
+    pub options: O,
 }
 
-/// A robot with its controller.
-pub struct Robot {
-    pub(super) setup: RobotSetup,
+/// A robot: an arm with its control box.
+pub struct Robot<B: ControlBox> {
+    pub(super) setup: RobotSetup<B::Options>,
     pub(super) cycle_s: f64,
     pub(super) model: RobotModel,
     pub(super) torque_limit: JointVector<f64>,
     pub(super) parameters: ArmParameters,
     pub(super) plant: Plant,
-    pub(super) krc: Krc,
-    pub(super) rating: Rating,
-    pub(super) inbox: Inbox,
+    pub(super) control_box: B,
     pub(super) counters: Counters,
-    pub(super) pipe: Pipe,
     pub(super) contacts: Contacts,
     /// Pushes typed while it runs, in robot time.
     pub(super) typed: Vec<PlacedPush>,
@@ -68,9 +60,8 @@ pub struct Robot {
     pub(super) ending: Ending,
     /// What the client's controller says of itself, where it can.
     pub(super) client: Option<Status>,
-    pub(super) ended_in_monitor: bool,
-    /// Why the last datagram that is no answer is none.
-    pub(super) unread: Option<fri::Error>,
+    /// Whether answers moved the arm no more at the end.
+    pub(super) ended_alone: bool,
 }
 
 /// Scenario time 0.
@@ -80,22 +71,10 @@ pub(super) struct Start {
     pub(super) origins: Vec<Target<f64>>,
 }
 
-/// What the robot sees at the start of a cycle.
-#[derive(Clone, Copy)]
-pub(super) struct Seen {
-    pub(super) truth: JointState<f64>,
-    pub(super) measured: JointState<f64>,
-    pub(super) mass_matrix: JointMatrix<f64>,
-    pub(super) gravity: JointVector<f64>,
-    /// +J^T F of all contacts \[Nm\].
-    pub(super) contact: JointVector<f64>,
-    pub(super) hand_force_n: f64,
-}
-
-impl Robot {
-    /// A robot at rest in the scenario's start posture, in monitor state.
+impl<B: ControlBox> Robot<B> {
+    /// A robot at rest in the scenario's start posture, which no answer moves yet.
     #[must_use]
-    pub fn new(setup: RobotSetup) -> Self {
+    pub fn new(setup: RobotSetup<B::Options>) -> Self {
         let scenario = &setup.scenario;
         let (cycle_s, q0) = (scenario.cycle_s(), scenario.start());
         let equipped = scenario.arm();
@@ -106,6 +85,7 @@ impl Robot {
         } else {
             Contacts::none()
         };
+        let dead_cycles = setup.plant_options.dead_cycles;
         let own = PlantOptions {
             dead_cycles: 0,
             ..setup.plant_options
@@ -116,11 +96,8 @@ impl Robot {
             torque_limit,
             parameters: *arm,
             plant: Plant::with_options(setup.plant, arm, q0, cycle_s, setup.seed, own),
-            krc: Krc::new(setup.options, cycle_s, &q0, arm),
-            rating: Rating::new(setup.options.rating, cycle_s),
-            inbox: Inbox::new(),
+            control_box: B::new(&setup.options, cycle_s, &q0, arm, dead_cycles),
             counters: Counters::default(),
-            pipe: Pipe::new(setup.plant_options.dead_cycles),
             metrics: Metrics::new(scenario.levels.len(), &contacts.intervals(), arm, cycle_s),
             contacts,
             typed: Vec::new(),
@@ -132,8 +109,7 @@ impl Robot {
             applied: None,
             ending: Ending::new(cycle_s),
             client: None,
-            ended_in_monitor: false,
-            unread: None,
+            ended_alone: false,
             setup,
         }
     }
@@ -165,7 +141,7 @@ impl Robot {
     }
 
     pub(super) fn drives_on(&self) -> bool {
-        let window = self.setup.options.drives_off_s;
+        let window = B::drives_off_s(&self.setup.options);
         let scripted = window.zip(self.time_s());
         !self.drives_off && !scripted.is_some_and(|([from, to], t)| t >= from && t < to)
     }
@@ -207,36 +183,25 @@ impl Robot {
     /// Whether an answer was ever accepted.
     #[must_use]
     pub fn has_begun(&self) -> bool {
-        self.inbox.has_begun()
+        self.control_box.has_begun()
     }
 
     /// The datagrams that were not used, as the end of a sentence.
     pub(crate) fn refused(&self) -> Option<String> {
-        let rejected = &self.counters.link.rejected;
-        let count = rejected.total();
-        let why = match &self.unread {
-            Some(error) => error.to_string(),
-            None => "reflects no measurement that was sent".to_string(),
-        };
+        let count = self.counters.link.rejected.total();
+        let why = self.control_box.refusal();
         (count > 0).then(|| format!("; {count} datagrams from there were refused, the last: {why}"))
     }
 
-    /// Whether command state was never reached.
+    /// The robot's controller.
     #[must_use]
-    pub fn has_never_commanded(&self) -> bool {
-        self.krc.entries() == 0
+    pub fn control_box(&self) -> &B {
+        &self.control_box
     }
 
-    /// How good the link is.
-    #[must_use]
-    pub fn quality(&self) -> Quality {
-        self.rating.quality()
-    }
-
-    /// State of the link.
-    #[must_use]
-    pub fn state(&self) -> InterfaceState {
-        self.krc.state()
+    /// What goes between it and the client beside the datagrams.
+    pub fn control_box_mut(&mut self) -> &mut B {
+        &mut self.control_box
     }
 
     /// The true arm.
@@ -259,7 +224,7 @@ impl Robot {
 
     /// What this robot is.
     #[must_use]
-    pub fn setup(&self) -> &RobotSetup {
+    pub fn setup(&self) -> &RobotSetup<B::Options> {
         &self.setup
     }
 
@@ -274,10 +239,10 @@ impl Robot {
         }
     }
 
-    /// Leaves command state for good; measurements say monitor from now on.
+    /// Lets answers move the arm no more; measurements say so from now on.
     pub fn leave(&mut self) {
-        self.ended_in_monitor |= self.krc.state() == InterfaceState::Monitor;
-        self.krc.leave();
+        self.ended_alone |= !self.control_box.commands();
+        self.control_box.leave();
     }
 
     /// Ends the run early.

@@ -3,11 +3,8 @@
 use std::time::Duration;
 
 use cell::timing::Times;
-use fri::{InterfaceState, Quality};
 
 use super::figures::{EVENTS_MAX, Event, LatencyFigures, LinkFigures, OwnLateness, Stamp};
-use super::krc::Krc;
-use super::rating::Rating;
 
 /// From here on a measurement counts as late \[cycles\]: what it takes to compute one and a
 /// usual wake-up are less.
@@ -79,20 +76,13 @@ impl Counters {
         }
     }
 
-    /// A cycle that began in `state`.
-    pub fn cycle(&mut self, state: InterfaceState, quality: Quality, scenario: bool) {
-        let command = u64::from(state == InterfaceState::Command);
-        self.link.state_cycles.command += command;
-        self.link.state_cycles.monitor += 1 - command;
+    /// A cycle; `commanded`: answers moved the arm when it began. `scenario`: its time ran.
+    pub fn cycle(&mut self, commanded: bool, scenario: bool) {
+        let commanded = u64::from(commanded);
+        self.link.state_cycles.command += commanded;
+        self.link.state_cycles.monitor += 1 - commanded;
         self.scenario += u64::from(scenario);
-        self.commanded += u64::from(scenario) * command;
-        let levels = &mut self.link.quality_cycles;
-        *match quality {
-            Quality::Bad => &mut levels.bad,
-            Quality::Ok => &mut levels.ok,
-            Quality::Perfect => &mut levels.perfect,
-            _ => &mut levels.unacceptable,
-        } += 1;
+        self.commanded += u64::from(scenario) * commanded;
     }
 
     /// Keeps an event while there is room.
@@ -102,8 +92,8 @@ impl Counters {
         }
     }
 
-    /// All figures.
-    pub fn figures(&self, krc: &Krc, rating: &Rating) -> LinkFigures {
+    /// All figures that are counted here.
+    pub fn figures(&self) -> LinkFigures {
         let share = |sum: f64, of: u64| (of > 0).then(|| sum / of as f64);
         let mean = |sum: f64| share(sum, self.link.answers);
         let latency = mean(self.latency_sum);
@@ -112,15 +102,12 @@ impl Counters {
             .map(|(mean, square)| (square - mean * mean).max(0.0));
         LinkFigures {
             command_share: share(self.commanded as f64, self.scenario),
-            missed: rating.missed(),
             latency_ms: LatencyFigures {
                 mean: latency.map(|t| t * 1e3),
                 max: latency.map(|_| self.latency_max * 1e3),
             },
             jitter_ms: variance.map(|variance| variance.sqrt() * 1e3),
-            fallbacks: krc.fallbacks(),
             own_lateness: self.departures.as_ref().map(Departures::figures),
-            recoveries: krc.entries().saturating_sub(1),
             ..self.link.clone()
         }
     }

@@ -1,36 +1,38 @@
 //! A cycle of the robot: it reports, takes answers, moves on.
 
-use controller_core::joint::JointVector;
-use fri::{InterfaceState, Measurement};
-
-use super::arm::{Robot, Seen, Start};
+use super::arm::{Robot, Start};
+use super::control_box::{Answer, ControlBox, Now, Seen, Surroundings, cycles};
 use super::driving::{Driving, Limited};
 use super::figures::{Event, Stamp};
-use super::inbox::{self, Answer};
-use super::krc::Now;
-use super::options::{RobotAdds, cycles};
-use super::order;
 use crate::after_fault::Acting;
 use crate::arm_points::origins;
 use crate::sample::{Stop, UnsafeMotion};
 use record::run::Sample;
 
-impl Robot {
+impl<B: ControlBox> Robot<B> {
     /// The measurement of this cycle. Each call is a datagram of its own with the
     /// next counter; a cycle may send several.
-    pub fn measurement(&mut self, out: &mut [u8; Measurement::LEN]) {
+    pub fn measurement(&mut self, out: &mut B::Measurement) {
         let seen = self.look();
-        if self.start.is_none() && self.krc.state() == InterfaceState::Command {
+        if self.start.is_none() && self.control_box.commands() {
             self.begin(&seen);
         }
-        let header = self.inbox.next_header(self.cycle);
-        self.report(&seen, header).emit(out);
+        let around = Surroundings {
+            seen: &seen,
+            model: &self.model,
+            applied: self.applied.as_ref(),
+            cycle: self.cycle,
+            cycle_s: self.cycle_s,
+            drives_on: self.drives_on(),
+        };
+        self.control_box.report(&around, out);
     }
 
-    /// Command state is reported for the first time: scenario time gets its zero.
+    /// A measurement says for the first time that answers move the arm: scenario time gets
+    /// its zero.
     fn begin(&mut self, seen: &Seen) {
-        let posture = seen.measured.q.map(|angle| f64::from(angle as f32));
-        let settle = cycles(self.setup.options.settle_s, self.cycle_s);
+        let posture = self.control_box.as_sent(&seen.measured.q);
+        let settle = cycles(B::settle_s(&self.setup.options), self.cycle_s);
         self.start = Some(Start {
             cycle: self.cycle + settle,
             posture,
@@ -46,14 +48,14 @@ impl Robot {
     /// By the wall clock: this cycle's measurement left at `at_s` \[s\], `late_s` \[s\]
     /// after its time.
     pub fn departed(&mut self, at_s: f64, late_s: f64) {
-        self.inbox.departed(self.cycle, at_s);
+        self.control_box.departed(self.cycle, at_s);
         self.counters.departure(late_s);
     }
 
     /// Whether this cycle has its answer.
     #[must_use]
     pub fn is_answered(&self) -> bool {
-        self.inbox.is_answered()
+        self.control_box.is_answered()
     }
 
     /// An answer has arrived, `since_measurement_s` \[s\] after this cycle's
@@ -63,40 +65,15 @@ impl Robot {
     /// on counters.
     pub fn command(&mut self, datagram: &[u8], since_measurement_s: f64) -> Answer {
         let q = self.look().measured.q;
-        let order = match order::read(datagram) {
-            Ok(order) => order,
-            Err(error) => {
-                inbox::count_error(&mut self.counters.link.rejected, &error);
-                self.unread = Some(error);
-                return Answer::Rejected;
-            }
-        };
-        let place = match self.inbox.place(&order, &mut self.counters.link) {
-            Ok(place) => place,
-            Err(answer) => {
-                self.unread = None;
-                return answer;
-            }
-        };
-        if let Err(refusal) = self.krc.accept(&order, &q) {
-            inbox::count_refusal(&mut self.counters.link.rejected, refusal);
-            return Answer::Rejected;
-        }
-        let behind = self.cycle - place;
-        let between_s = self.inbox.between(place, self.cycle);
-        let between_s = between_s.unwrap_or(behind as f64 * self.cycle_s);
-        // Never before its measurement, whatever two clocks say.
-        let latency_s = (between_s + since_measurement_s).max(0.0);
-        let in_time = behind == 0 && latency_s <= self.cycle_s;
-        self.inbox.accepted(place, in_time.then_some(latency_s));
-        self.counters.answer(latency_s, in_time);
-        Answer::Accepted
+        let (cycle, cycle_s) = (self.cycle, self.cycle_s);
+        let counters = &mut self.counters;
+        (self.control_box).command(datagram, cycle, cycle_s, since_measurement_s, &q, counters)
     }
 
     /// Ends the cycle: rates the link, moves the arm. What the cycle was, if
     /// scenario time runs. Before the first answer nothing moves and no time passes.
     pub fn advance(&mut self) -> Option<Sample> {
-        if !self.inbox.has_begun() || self.ending.is_over() {
+        if !self.control_box.has_begun() || self.ending.is_over() {
             return None;
         }
         let seen = self.look();
@@ -105,25 +82,17 @@ impl Robot {
             self.ending.at_once(Stop::Unsafe(lost));
             return None;
         }
-        let state = self.krc.state();
-        self.rating.add(self.inbox.end_of_cycle());
         let now = Now {
-            rating: &self.rating,
             drives_on: self.drives_on(),
             unsafe_motion,
             q: &seen.measured.q,
             mass_matrix: &seen.mass_matrix,
         };
-        let bridging = self.krc.is_bridging();
-        let driving = self.krc.cycle(&now, &mut self.pipe);
-        let bridging = bridging || self.krc.is_bridging() || self.krc.state() != state;
-        if self.rating.broken() {
-            // The client may begin anew, with any counter.
-            self.inbox.forget_counter();
-        }
+        let turn = self.control_box.cycle(&now);
+        let driving = turn.driving;
 
         let mut explicit = driving.torque + seen.gravity;
-        if self.setup.options.adds == RobotAdds::GravityCoriolis {
+        if self.control_box.adds_coriolis() {
             explicit += self.model.coriolis(&seen.measured, &seen.mass_matrix);
         }
         let whole = Driving {
@@ -137,8 +106,8 @@ impl Robot {
             saturated,
         } = whole.limited(motors, &self.torque_limit);
         let by_itself = unsafe_motion.is_some() || self.ending.has_begun();
-        if let (Some(last), true) = (self.applied, bridging && !by_itself) {
-            let by_link = applied - last - self.krc.ordered_change();
+        if let (Some(last), true) = (self.applied, turn.bridging && !by_itself) {
+            let by_link = applied - last - turn.ordered_change;
             let largest = &mut self.counters.link.largest_torque_step_nm;
             *largest = largest.max(by_link.amax());
         }
@@ -151,9 +120,8 @@ impl Robot {
         self.ending
             .cycle(self.clock_s(), &seen.truth, unsafe_motion, &acting);
         let t_s = self.time_s();
-        self.counters
-            .cycle(state, self.rating.quality(), t_s.is_some());
-        for text in self.krc.take_messages() {
+        self.counters.cycle(turn.commanded, t_s.is_some());
+        for text in self.control_box.take_messages() {
             let robot_t_s = self.robot_time_s();
             self.counters.event(Event {
                 t_s,
@@ -162,13 +130,10 @@ impl Robot {
             });
         }
 
-        // User data may hold anything; figures are made from what a torque can be.
-        let residual = self.krc.order().map_or(JointVector::zeros(), |order| {
-            let limit = &self.torque_limit;
-            order
-                .residual
-                .zip_map(limit, |r, limit| r.clamp(-limit, limit))
-        });
+        // A client may say anything; figures are made from what a torque can be.
+        let told = self.control_box.told();
+        let limit = &self.torque_limit;
+        let residual = (told.residual).zip_map(limit, |r, limit| r.clamp(-limit, limit));
         self.move_on(&driving);
 
         let (t_s, start) = (t_s?, self.start.as_ref()?);
@@ -182,7 +147,7 @@ impl Robot {
             state: seen.truth,
             torque: applied,
             residual,
-            mode: self.krc.order().and_then(|order| order.mode),
+            mode: told.mode,
             saturated,
             rank: false,
             tau_ext: -seen.contact,

@@ -20,9 +20,9 @@ pub struct Event {
 /// Cycles per state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StateCycles {
-    /// In monitor state.
+    /// In which the robot moved or held the arm itself.
     pub monitor: u64,
-    /// In command state.
+    /// In which answers moved it.
     pub command: u64,
 }
 

@@ -1,4 +1,5 @@
-//! The robot's side of the LWR FRI: an arm, its controller, and what they report.
+//! The robot's side: an arm, its control box, and what they report. What differs from robot
+//! to robot is behind [`ControlBox`]; the LWR is [`LwrBox`].
 //!
 //! A [`Robot`] is driven cycle by cycle and passes byte arrays, so that a
 //! datagram socket and a client in the same process see exactly the same:
@@ -17,35 +18,35 @@
 //! the added torque; the robot's own gravity, springs and dampers act at once.
 //!
 //! Scenario time 0 is `settle_s` (1 s) after the cycle whose measurement first said
-//! command state. References and q_d start from the position of that measurement,
-//! as the binary32 numbers that the client saw. From time 0 on contacts act and
-//! figures count; losing command state does not stop that clock.
+//! that answers move the arm. References and q_d start from the position of that
+//! measurement, as the numbers that the client saw. From time 0 on contacts act and
+//! figures count; that answers move the arm no more does not stop that clock.
 
 mod arm;
+mod control_box;
 mod counters;
 mod cycle;
 mod driving;
 mod figures;
-mod inbox;
-mod krc;
+mod lwr;
 mod model;
-mod options;
-mod order;
-mod rating;
-mod report;
 mod summary;
 
 pub use arm::{Robot, RobotSetup};
-pub(crate) use driving::Driving;
+pub(crate) use control_box::cycles;
+pub use control_box::{Answer, ControlBox, Now, Seen, Surroundings, Told, Turn};
+pub use counters::Counters;
+pub use driving::Driving;
 pub use figures::{
     Event, LatencyFigures, LinkFigures, OwnLateness, QualityCycles, Rejected, Stamp, StateCycles,
 };
 pub use fri::InterfaceState as State;
 pub use fri::measurement::LEN as MEASUREMENT_BYTES;
-pub use inbox::Answer;
-pub use krc::Krc;
+pub use lwr::{
+    Krc, Krl, LwrBox, Order, POSITION_STIFFNESS, Rating, RatingOptions, RobotAdds, RobotOptions,
+    Statistics, scheme_named,
+};
 pub use model::RobotModel;
-pub(crate) use options::cycles;
-pub use options::{Krl, POSITION_STIFFNESS, RatingOptions, RobotAdds, RobotOptions, scheme_named};
-pub use order::Order;
-pub use rating::{Rating, Statistics};
+
+/// The LWR.
+pub type LwrRobot = Robot<LwrBox>;

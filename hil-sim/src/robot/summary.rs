@@ -1,10 +1,11 @@
 //! What a robot's run was: figures and verdict.
 
 use super::arm::Robot;
+use super::control_box::ControlBox;
 use crate::summary::{Conditions, Summary, Verdict};
 use cell::names::MeasurementKind;
 
-impl Robot {
+impl<B: ControlBox> Robot<B> {
     /// Figures, verdict and link of the run so far.
     #[must_use]
     pub fn summary(&self) -> Summary {
@@ -17,7 +18,7 @@ impl Robot {
         };
         let (metrics, ending) = (&self.metrics, &self.ending);
         let mut summary = Summary::of(&setup.scenario, &conditions, setup.seed, metrics, ending);
-        if self.ended_in_monitor && !ending.has_begun() {
+        if self.ended_alone && !ending.has_begun() {
             let lost = "not in command state at the end".to_string();
             summary.verdict = Verdict::Fail;
             summary.reason = Some(match summary.reason {
@@ -25,7 +26,7 @@ impl Robot {
                 None => lost,
             });
         }
-        summary.link = Some(self.counters.figures(&self.krc, &self.rating));
+        summary.link = Some(self.control_box.figures(self.counters.figures()));
         summary
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 
-use crate::robot::Robot;
+use crate::robot::{ControlBox, Robot};
 use crate::sample::Stop;
 use cell::invalid::Invalid;
 use cell::ranges::{DURATION_S, Range};
@@ -137,7 +137,7 @@ impl Operator {
     }
 
     /// Does what was asked for since the last call.
-    pub fn attend(&mut self, robot: &mut Robot) {
+    pub fn attend<B: ControlBox>(&mut self, robot: &mut Robot<B>) {
         if self.interrupted.load(Ordering::Relaxed) {
             robot.abort(Stop::Interrupted);
         }

@@ -19,7 +19,7 @@ pub use transport::{Arrival, Transport};
 pub use udp::Udp;
 
 use crate::link::LockStep;
-use crate::robot::Robot;
+use crate::robot::{ControlBox, Robot};
 use record::run::Sample;
 
 impl Service {
@@ -28,9 +28,9 @@ impl Service {
     ///
     /// # Errors
     /// The socket's, and those of `sink`.
-    pub fn run(
+    pub fn run<B: ControlBox>(
         &self,
-        robot: &mut Robot,
+        robot: &mut Robot<B>,
         operator: &mut Operator,
         client: &mut dyn Transport,
         sink: impl FnMut(&Sample) -> io::Result<()>,
@@ -42,9 +42,9 @@ impl Service {
         }
     }
 
-    fn lockstep(
+    fn lockstep<B: ControlBox>(
         &self,
-        robot: &mut Robot,
+        robot: &mut Robot<B>,
         operator: &mut Operator,
         client: &mut dyn Transport,
         mut sink: impl FnMut(&Sample) -> io::Result<()>,

@@ -14,19 +14,19 @@ use super::console::Operator;
 use super::service::{End, Service};
 use super::transport::{RESEND, Transport};
 use crate::link::{Channel, Direction};
-use crate::robot::{MEASUREMENT_BYTES, Robot};
+use crate::robot::{ControlBox, Robot};
 use record::run::Sample;
 
 /// Runs the service in real time.
-pub(super) fn run(
+pub(super) fn run<B: ControlBox>(
     service: &Service,
-    robot: &mut Robot,
+    robot: &mut Robot<B>,
     operator: &mut Operator,
     client: &mut dyn Transport,
     mut sink: impl FnMut(&Sample) -> io::Result<()>,
 ) -> io::Result<End> {
     let begun = Clock::now();
-    let mut measurement = [0; MEASUREMENT_BYTES];
+    let mut measurement = B::EMPTY;
     while !robot.has_begun() {
         operator.attend(robot);
         if robot.is_finished() {
@@ -36,7 +36,7 @@ pub(super) fn run(
             return Ok(end);
         }
         robot.measurement(&mut measurement);
-        client.send(&measurement)?;
+        client.send(measurement.as_ref())?;
         if let Some(answer) = client.receive(client.now() + RESEND)? {
             robot.command(answer, 0.0);
         }
@@ -70,7 +70,7 @@ pub(super) fn run(
     robot.leave();
     for _ in 0..3 {
         robot.measurement(&mut measurement);
-        client.send(&measurement)?;
+        client.send(measurement.as_ref())?;
     }
     Ok(End::Finished)
 }
@@ -99,7 +99,11 @@ impl Schedule {
     }
 
     /// Sends the measurement and takes answers until the cycle is over.
-    fn cycle(&mut self, robot: &mut Robot, client: &mut dyn Transport) -> io::Result<()> {
+    fn cycle<B: ControlBox>(
+        &mut self,
+        robot: &mut Robot<B>,
+        client: &mut dyn Transport,
+    ) -> io::Result<()> {
         let mut start = (robot.cycle() - self.first) as f64 * self.cycle_s + self.moved_s;
         let wanted = start.max(self.free_s);
         let asleep_s = self.now_s(client) - start;
@@ -109,9 +113,10 @@ impl Schedule {
         }
         let end = start + self.cycle_s;
         let t_s = robot.time_s();
-        let mut measurement = [0; MEASUREMENT_BYTES];
+        let mut measurement = B::EMPTY;
         robot.measurement(&mut measurement);
-        self.to_client.send(self.now_s(client), t_s, &measurement);
+        let now = self.now_s(client);
+        self.to_client.send(now, t_s, measurement.as_ref());
         self.pass_on(client)?;
         // Looked at behind the sending: in doubt the time is the robot's.
         let sent = self.now_s(client);
@@ -159,7 +164,7 @@ mod tests {
     use super::super::transport::Arrival;
     use super::*;
     use crate::plant::PlantOptions;
-    use crate::robot::{LinkFigures, RatingOptions, RobotOptions, RobotSetup, Stamp};
+    use crate::robot::{LinkFigures, LwrRobot, RatingOptions, RobotOptions, RobotSetup, Stamp};
     use cell::names::PlantKind;
     use cell::scenario::Scenario;
     use fri::{Command, Flags, Measurement, MeasurementPacket};
@@ -247,7 +252,7 @@ mod tests {
     ) -> LinkFigures {
         let mut scenario = Scenario::find("two-level").expect("built in");
         scenario.duration_s = 1.8;
-        let mut robot = Robot::new(RobotSetup {
+        let mut robot = LwrRobot::new(RobotSetup {
             scenario,
             plant: PlantKind::Ideal,
             contacts: false,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant as Clock};
 
 use crate::link::Fault;
-use crate::robot::Robot;
+use crate::robot::{ControlBox, Robot};
 
 /// How a robot is served.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ pub enum End {
 impl Service {
     /// Whether to wait no longer: for the first answer by the wall clock, for
     /// command state by the robot's.
-    pub(super) fn hopeless(&self, robot: &Robot, begun: Clock) -> Option<End> {
+    pub(super) fn hopeless<B: ControlBox>(&self, robot: &Robot<B>, begun: Clock) -> Option<End> {
         if !robot.has_begun() {
             let over = begun.elapsed() > Duration::from_secs_f64(self.wait_s);
             return over.then(|| {
@@ -68,11 +68,10 @@ impl Service {
                 ))
             });
         }
-        let over = robot.has_never_commanded() && robot.robot_time_s() > self.wait_s;
+        let over = robot.control_box().has_never_commanded() && robot.robot_time_s() > self.wait_s;
         over.then(|| {
             let last = robot.events().last().map(|event| event.text.clone());
-            let quality = format!("{:?}", robot.quality()).to_lowercase();
-            let why = last.unwrap_or_else(|| format!("link quality {quality}"));
+            let why = last.unwrap_or_else(|| robot.control_box().link());
             End::NoClient(format!(
                 "no command state with {} within {} s: {why}",
                 self.client, self.wait_s

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::time::{Duration, Instant};
 
 use crate::link::{Expect, Peer};
-use crate::robot::Stamp;
+use crate::robot::{ControlBox, Stamp};
 
 /// How long a client may take to answer in lock-step before it counts as gone.
 pub const PATIENCE: Duration = Duration::from_secs(2);
@@ -71,7 +71,7 @@ pub(super) fn silence(error: &io::Error) -> bool {
     )
 }
 
-impl<T: Transport + ?Sized> Peer for T {
+impl<B: ControlBox, T: Transport + ?Sized> Peer<B> for T {
     fn exchange(
         &mut self,
         measurement: &[u8],
@@ -87,10 +87,9 @@ impl<T: Transport + ?Sized> Peer for T {
             Expect::Farewell => return Ok(true),
         };
         let mut deadline = Instant::now() + patience;
-        let counter = measurement.get(..2);
         while let Some(answer) = self.receive(deadline)? {
             answers.push(answer.to_vec());
-            if expect != Expect::Nothing && answer.get(2..4) == counter {
+            if expect != Expect::Nothing && B::answers(measurement, answer) {
                 return Ok(true);
             }
             // It has answered, if not to this: outdated or damaged. The right one may follow.
@@ -107,6 +106,7 @@ impl<T: Transport + ?Sized> Peer for T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::LwrBox;
 
     /// Answers with these datagrams, then never.
     struct Script(Vec<Vec<u8>>, Vec<u8>);
@@ -141,7 +141,8 @@ mod tests {
         ] {
             let (count, begun, mut answers) = (script.len(), Instant::now(), Vec::new());
             let mut client = Script(script, Vec::new());
-            let answered = client.exchange(&[7, 0, 0, 0], Expect::Answer, &mut answers);
+            let peer: &mut dyn Peer<LwrBox> = &mut client;
+            let answered = peer.exchange(&[7, 0, 0, 0], Expect::Answer, &mut answers);
             assert_eq!(answered.expect("no socket"), there);
             assert_eq!(answers.len(), count);
             assert_eq!(begun.elapsed() < PATIENCE / 2, soon);

@@ -6,9 +6,9 @@ use cell::scenario::Scenario;
 use controller_core::joint::JointVector;
 use fri::{Command, Flags, InterfaceState, Measurement, MeasurementPacket};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{Answer, MEASUREMENT_BYTES, Robot, RobotOptions, RobotSetup};
+use hil_sim::robot::{Answer, LwrRobot, MEASUREMENT_BYTES, RobotOptions, RobotSetup};
 
-pub fn setup(plant: PlantKind, options: RobotOptions) -> RobotSetup {
+pub fn setup(plant: PlantKind, options: RobotOptions) -> RobotSetup<RobotOptions> {
     RobotSetup {
         scenario: Scenario::find("two-level").expect("built in"),
         plant,
@@ -19,8 +19,8 @@ pub fn setup(plant: PlantKind, options: RobotOptions) -> RobotSetup {
     }
 }
 
-pub fn robot(plant: PlantKind) -> Robot {
-    Robot::new(setup(plant, RobotOptions::default()))
+pub fn robot(plant: PlantKind) -> LwrRobot {
+    LwrRobot::new(setup(plant, RobotOptions::default()))
 }
 
 pub struct Client {
@@ -52,14 +52,14 @@ impl Client {
     }
 }
 
-pub fn measurement(robot: &mut Robot) -> Measurement {
+pub fn measurement(robot: &mut LwrRobot) -> Measurement {
     let mut bytes = [0; MEASUREMENT_BYTES];
     robot.measurement(&mut bytes);
     let packet = MeasurementPacket::new_checked(&bytes[..]).expect("a measurement");
     Measurement::parse(&packet)
 }
 
-pub fn send(robot: &mut Robot, command: &Command) -> Answer {
+pub fn send(robot: &mut LwrRobot, command: &Command) -> Answer {
     let mut bytes = [0; Command::LEN];
     command.emit(&mut bytes);
     robot.command(&bytes, 0.0)
@@ -67,14 +67,14 @@ pub fn send(robot: &mut Robot, command: &Command) -> Answer {
 
 /// Robot and client in lock-step, with the largest torque step ever seen.
 pub struct Loop {
-    pub robot: Robot,
+    pub robot: LwrRobot,
     pub client: Client,
     pub last: Option<JointVector<f64>>,
     pub step: f64,
 }
 
 impl Loop {
-    pub fn new(robot: Robot) -> Self {
+    pub fn new(robot: LwrRobot) -> Self {
         Self {
             robot,
             client: Client::new(),
@@ -108,7 +108,7 @@ impl Loop {
     pub fn enter(&mut self) {
         self.polite(300);
         assert_eq!(
-            self.robot.state(),
+            self.robot.control_box().state(),
             hil_sim::robot::State::Command,
             "{:?}",
             self.robot.events()

@@ -10,7 +10,7 @@ use controller_core::{Controller, Measurement, State};
 use fri::InterfaceState;
 use hil_sim::arm_points::origins;
 use hil_sim::link::{Expect, LockStep, Peer};
-use hil_sim::robot::{Robot, RobotOptions};
+use hil_sim::robot::{LwrBox, LwrRobot, RobotOptions};
 use hil_sim::summary::Summary;
 
 use crate::client::{Client, setup};
@@ -62,7 +62,7 @@ impl Bridge {
     }
 }
 
-impl Peer for Bridge {
+impl Peer<LwrBox> for Bridge {
     fn exchange(
         &mut self,
         measurement: &[u8],
@@ -95,7 +95,7 @@ fn run(plant: PlantKind, contacts: bool, dead_cycles: usize, faults: &[&str]) ->
         .map(|spec| spec.parse().expect("a spec"))
         .collect();
     let mut bridge = Bridge::new(&setup.scenario);
-    let mut robot = Robot::new(setup);
+    let mut robot = LwrRobot::new(setup);
     let mut link = LockStep::new(&faults, 0.002, 1);
     let mut last = -1.0;
     while !robot.is_finished() {

@@ -2,7 +2,7 @@
 
 use cell::names::PlantKind::{self, Ideal, Realistic};
 use controller_core::joint::JointVector;
-use hil_sim::robot::{Robot, RobotAdds, RobotOptions, State};
+use hil_sim::robot::{LwrRobot, RobotAdds, RobotOptions, State};
 
 use crate::client::{Loop, robot, setup};
 
@@ -37,7 +37,7 @@ fn fallback_while_moving_has_no_torque_step_and_ends_at_rest() {
         link.run(11, |_, _| false);
         let summary = link.robot.summary();
         assert_eq!(
-            link.robot.state(),
+            link.robot.control_box().state(),
             State::Monitor,
             "{:?} {speed}",
             summary.reason
@@ -75,10 +75,10 @@ fn the_position_scheme_follows_a_ramp() {
             scheme: fri::ControlScheme::Position,
             ..RobotOptions::default()
         };
-        let mut link = Loop::new(Robot::new(setup(plant, options)));
+        let mut link = Loop::new(LwrRobot::new(setup(plant, options)));
         link.client.flags = 1;
         link.polite(300);
-        assert_eq!(link.robot.state(), State::Command);
+        assert_eq!(link.robot.control_box().state(), State::Command);
         let (mut goal, mut n) = (None, 0);
         let speed = 0.2_f32;
         let mut ramp = |msr: &fri::Measurement, command: &mut fri::Command| {
@@ -118,7 +118,7 @@ fn the_position_scheme_follows_a_ramp() {
         link.run(20, &mut ramp);
         assert_eq!(link.robot.summary().link.expect("a link").rejected.jump, 0);
         link.run(700, |_, _| false);
-        assert_eq!(link.robot.state(), State::Monitor);
+        assert_eq!(link.robot.control_box().state(), State::Monitor);
         assert!(link.step < STEP_MAX, "{plant:?}: {}", link.step);
         assert!(link.robot.plant().state().dq.amax() < 5e-3);
     }
@@ -150,7 +150,7 @@ fn stiffness_of_the_answer_is_that_of_the_arm() {
         });
     };
     run(&mut link, 500, torque);
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     let before = link.robot.plant().state().q;
     torque = 4.0;
     run(&mut link, 2000, torque);
@@ -163,7 +163,7 @@ fn dead_cycles_delay_the_added_torque_alone() {
     let speeds = |dead_cycles: usize| {
         let mut setup = setup(Ideal, RobotOptions::default());
         setup.plant_options.dead_cycles = dead_cycles;
-        let mut link = Loop::new(Robot::new(setup));
+        let mut link = Loop::new(LwrRobot::new(setup));
         link.enter();
         link.polite(100);
         let mut speeds = Vec::new();
@@ -192,7 +192,7 @@ fn the_robot_adds_coriolis_torque_on_demand() {
             adds,
             ..RobotOptions::default()
         };
-        let mut link = Loop::new(Robot::new(setup(Ideal, options)));
+        let mut link = Loop::new(LwrRobot::new(setup(Ideal, options)));
         link.enter();
         link.run(300, |_, command| {
             command.joint_torque = [5.0, 3.0, 2.0, 3.0, 0.3, 0.2, 0.02];

@@ -1,7 +1,7 @@
 //! The way into command state, and what bars it.
 
 use cell::names::PlantKind::{Ideal, Realistic};
-use hil_sim::robot::{Answer, Krl, Robot, RobotOptions, State};
+use hil_sim::robot::{Answer, Krl, LwrRobot, RobotOptions, State};
 
 use crate::client::{Client, Loop, measurement, robot, send, setup};
 
@@ -11,13 +11,13 @@ fn a_stranger_gets_into_command_state() {
         for seed in 1..=10 {
             let mut setup = setup(plant, RobotOptions::default());
             setup.seed = seed;
-            let mut link = Loop::new(Robot::new(setup));
+            let mut link = Loop::new(LwrRobot::new(setup));
             // A hundred rated cycles and 0.2 s; the state is said by the next.
             link.polite(199);
-            assert_eq!(link.robot.state(), State::Monitor);
+            assert_eq!(link.robot.control_box().state(), State::Monitor);
             link.polite(1);
             assert_eq!(
-                link.robot.state(),
+                link.robot.control_box().state(),
                 State::Command,
                 "{:?}",
                 link.robot.events()
@@ -41,13 +41,13 @@ fn mirroring_the_measured_position_is_close_enough() {
     for seed in 1..=10 {
         let mut setup = setup(Realistic, RobotOptions::default());
         setup.seed = seed;
-        let mut link = Loop::new(Robot::new(setup));
+        let mut link = Loop::new(LwrRobot::new(setup));
         link.run(300, |msr, command| {
             command.joint_position = msr.joint_position;
             true
         });
         assert_eq!(
-            link.robot.state(),
+            link.robot.control_box().state(),
             State::Command,
             "{seed}: {:?}",
             link.robot.events()
@@ -86,7 +86,7 @@ fn every_check_bars_the_way_with_its_message() {
             edit(n, command);
             true
         });
-        assert_eq!(link.robot.state(), State::Monitor);
+        assert_eq!(link.robot.control_box().state(), State::Monitor);
         assert!(link.said(message), "{:?}", link.robot.events());
         // Once, not every time.
         assert_eq!(link.robot.events().len(), 1);
@@ -99,14 +99,14 @@ fn drives_off_bar_the_way_and_end_command_state() {
     let mut link = Loop::new(robot(Ideal));
     link.robot.switch_drives(false);
     link.polite(400);
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.said("drives are off"));
     assert_eq!(measurement(&mut link.robot).drives.power, 0);
     link.robot.switch_drives(true);
     link.enter();
     link.robot.switch_drives(false);
     link.polite(1);
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.said("monitor state: drives off"));
 }
 
@@ -118,7 +118,7 @@ fn a_poor_link_never_gets_there() {
         n += 1;
         n % 10 != 0
     });
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.robot.events().is_empty());
 }
 
@@ -128,7 +128,7 @@ fn the_handshake_waits_for_the_client() {
         krl: Krl::Handshake,
         ..RobotOptions::default()
     };
-    let mut link = Loop::new(Robot::new(setup(Ideal, options)));
+    let mut link = Loop::new(LwrRobot::new(setup(Ideal, options)));
     let krc = |link: &mut Loop| measurement(&mut link.robot).user.int[1];
     let ask = |strategy: i32, wish: i32| {
         move |_: &fri::Measurement, command: &mut fri::Command| {
@@ -138,20 +138,32 @@ fn the_handshake_waits_for_the_client() {
         }
     };
     link.polite(400);
-    assert_eq!((link.robot.state(), krc(&mut link)), (State::Monitor, 10));
+    assert_eq!(
+        (link.robot.control_box().state(), krc(&mut link)),
+        (State::Monitor, 10)
+    );
     link.run(400, ask(20, 1));
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.said("strategy 20 (Cartesian impedance) is not supported"));
     link.run(150, ask(30, 1));
-    assert_eq!((link.robot.state(), krc(&mut link)), (State::Command, 1));
+    assert_eq!(
+        (link.robot.control_box().state(), krc(&mut link)),
+        (State::Command, 1)
+    );
     assert_eq!(
         measurement(&mut link.robot).drives.control,
         fri::ControlScheme::JointImpedance
     );
     link.run(1, ask(30, 0));
-    assert_eq!((link.robot.state(), krc(&mut link)), (State::Monitor, 0));
+    assert_eq!(
+        (link.robot.control_box().state(), krc(&mut link)),
+        (State::Monitor, 0)
+    );
     link.run(150, ask(10, 1));
-    assert_eq!((link.robot.state(), krc(&mut link)), (State::Command, 1));
+    assert_eq!(
+        (link.robot.control_box().state(), krc(&mut link)),
+        (State::Command, 1)
+    );
     assert_eq!(
         measurement(&mut link.robot).drives.control,
         fri::ControlScheme::Position

@@ -11,11 +11,11 @@ fn ten_missing_answers_are_bridged_and_eleven_are_not() {
     let mut link = Loop::new(robot(Ideal));
     link.enter();
     link.run(10, |_, _| false);
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     link.polite(300);
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     link.run(11, |_, _| false);
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.said("monitor state: 11 answers missing in a row"));
     // Back by itself, also with a client that counts anew.
     link.client.counter = 3;
@@ -43,7 +43,7 @@ fn flags_must_stay() {
     link.enter();
     link.client.flags = 0x15;
     link.polite(1);
-    assert_eq!(link.robot.state(), State::Monitor);
+    assert_eq!(link.robot.control_box().state(), State::Monitor);
     assert!(link.said("cmdFlags changed in command state"));
     link.enter();
 }
@@ -58,7 +58,7 @@ fn a_jump_of_position_is_not_used() {
         command.joint_torque = [50.0; 7];
         true
     });
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     link.polite(1);
     assert!(link.robot.plant().state().dq.amax() < 1e-3);
     let figures = link.robot.summary().link.expect("a link");
@@ -82,7 +82,7 @@ fn a_torque_that_no_client_can_mean_is_not_used() {
         command.user.real[..7].fill(-6.7e21);
         true
     });
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     link.polite(1);
     assert!(link.robot.plant().state().dq.amax() < 1e-3);
     let summary = link.robot.summary();
@@ -110,7 +110,7 @@ fn the_speed_of_the_commanded_position_is_limited() {
         stiff(command);
         true
     });
-    assert_eq!(link.robot.state(), State::Command);
+    assert_eq!(link.robot.control_box().state(), State::Command);
     let mut goal = None;
     // 1.1 x 110 deg/s x 2 ms = 4.2 mrad a cycle.
     link.run(100, |msr, command| {
@@ -121,7 +121,7 @@ fn the_speed_of_the_commanded_position_is_limited() {
         true
     });
     assert_eq!(
-        link.robot.state(),
+        link.robot.control_box().state(),
         State::Command,
         "{:?}",
         link.robot.events()

@@ -163,8 +163,3 @@ impl Default for RobotOptions {
         }
     }
 }
-
-/// Whole cycles in a time, at least one.
-pub(crate) fn cycles(time_s: f64, cycle_s: f64) -> u64 {
-    (time_s / cycle_s).round().max(1.0) as u64
-}

@@ -3,25 +3,13 @@
 use fri::sequence::{Arrival, Receiver, Sender};
 use fri::{Error, Header};
 
-use super::figures::{LinkFigures, Rejected};
 use super::krc::Refusal;
 use super::order::Order;
+use crate::robot::control_box::Answer;
+use crate::robot::figures::{LinkFigures, Rejected};
 
 /// Measurements whose answers are still known.
 const REMEMBERED: usize = 1024;
-
-/// What became of an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// The newest: it acts.
-    Accepted,
-    /// Seen before, or to a cycle that has its answer: no effect.
-    Repeated,
-    /// Older than one already accepted: no effect.
-    Old,
-    /// Not usable: no effect.
-    Rejected,
-}
 
 /// Counters of both sides.
 #[derive(Clone, Debug)]

@@ -4,14 +4,15 @@
 mod orders;
 
 use controller_core::arm::{ArmParameters, LinkParameters};
-use controller_core::joint::{DOF, JointMatrix, JointVector};
+use controller_core::joint::{DOF, JointVector};
 use fri::{ControlScheme, InterfaceState, Quality};
 
-use super::driving::{Driving, Passage, Pipe};
-use super::options::{Krl, RobotOptions, cycles};
+use super::options::{Krl, RobotOptions};
 use super::order::Order;
 use super::rating::Rating;
 use crate::plant::Impedance;
+use crate::robot::control_box::{Now, cycles};
+use crate::robot::driving::{Driving, Passage, Pipe};
 use crate::sample::UnsafeMotion;
 
 /// Why the content of an answer is not used.
@@ -23,21 +24,6 @@ pub enum Refusal {
     Jump,
     /// addJntTrq is more than any client can mean.
     Torque,
-}
-
-/// What a cycle brings besides the answer.
-#[derive(Clone, Copy)]
-pub struct Now<'a> {
-    /// Rating with this cycle in it.
-    pub rating: &'a Rating,
-    /// Whether the drives have power.
-    pub drives_on: bool,
-    /// A motion that the robot itself ends.
-    pub unsafe_motion: Option<UnsafeMotion>,
-    /// Measured position \[rad\].
-    pub q: &'a JointVector<f64>,
-    /// M of the robot's model \[kg m2\].
-    pub mass_matrix: &'a JointMatrix<f64>,
 }
 
 /// The robot controller.
@@ -200,10 +186,10 @@ impl Krc {
         self.order.as_ref()
     }
 
-    /// Ends a cycle: what the motors get in it besides the robot's own dynamics.
+    /// Ends a cycle, which is in `rating`: what the motors get in it besides the robot's own dynamics.
     /// `added` delays the added torque of orders by the dead time; it is told
     /// when what is under way is void.
-    pub fn cycle(&mut self, now: &Now<'_>, added: &mut Pipe) -> Driving {
+    pub fn cycle(&mut self, now: &Now<'_>, rating: &Rating, added: &mut Pipe) -> Driving {
         self.age = if self.fresh {
             0
         } else {
@@ -215,7 +201,7 @@ impl Krc {
             if let Some(motion) = now.unsafe_motion {
                 self.brake(now, &motion);
                 added.void();
-            } else if let Some((reason, fault)) = self.must_stop(now) {
+            } else if let Some((reason, fault)) = self.must_stop(now, rating) {
                 self.stop(now, &reason, fault);
                 added.void();
             }
@@ -243,7 +229,7 @@ impl Krc {
         self.arrived = wanted.torque;
         self.last = self.passage.blend(&wanted);
         self.from = self.commanded;
-        self.consider(now);
+        self.consider(now, rating);
         self.refused = None;
         self.last
     }
@@ -260,18 +246,18 @@ impl Krc {
     }
 
     /// Why command state must end, and whether that is a fault.
-    fn must_stop(&self, now: &Now<'_>) -> Option<(String, bool)> {
+    fn must_stop(&self, now: &Now<'_>, rating: &Rating) -> Option<(String, bool)> {
         let wish = self.order.is_none_or(|order| order.wants_command);
         if self.refused == Some(Refusal::Flags) {
             let text = "cmdFlags changed in command state; they must stay constant";
             Some((text.into(), true))
         } else if !now.drives_on {
             Some(("drives off".into(), true))
-        } else if now.rating.broken() {
-            let row = now.rating.row();
+        } else if rating.broken() {
+            let row = rating.row();
             Some((format!("{row} answers missing in a row"), true))
-        } else if now.rating.quality() == Quality::Unacceptable {
-            let rate = now.rating.statistics().answer_rate;
+        } else if rating.quality() == Quality::Unacceptable {
+            let rate = rating.statistics().answer_rate;
             Some((format!("answer rate {rate:.2}: link unacceptable"), true))
         } else if self.options.krl == Krl::Handshake && !wish {
             Some(("the client gives command state back".into(), false))
@@ -374,13 +360,13 @@ impl Krc {
     }
 
     /// In monitor state: whether command state begins with the next measurement.
-    fn consider(&mut self, now: &Now<'_>) {
+    fn consider(&mut self, now: &Now<'_>, rating: &Rating) {
         if self.commands || self.left {
             return;
         }
         let Some(order) = self.order else { return };
         let wish = self.options.krl == Krl::Auto || order.wants_command;
-        let link = matches!(now.rating.quality(), Quality::Ok | Quality::Perfect);
+        let link = matches!(rating.quality(), Quality::Ok | Quality::Perfect);
         if !link || self.age > 0 || !wish {
             // One missing answer does not begin the wait anew; a bad link does.
             if !link || !wish {
