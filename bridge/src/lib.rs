@@ -8,6 +8,7 @@
 //! - [`source`]: where the wanted motion comes from;
 //! - [`protocol`]: what differs from robot to robot;
 //! - [`lwr`]: the LWR by the Fast Research Interface;
+//! - [`fci`]: Panda and FR3 by the Franka Control Interface, its real-time part;
 //! - `belief`: which measured positions an arm can have reached;
 //! - `link_monitor`: counters, and whether the link carries a motion;
 //! - [`framing`]: datagrams on a serial line;
@@ -25,6 +26,7 @@ extern crate std;
 
 pub mod audit;
 mod belief;
+pub mod fci;
 pub mod framing;
 mod link_monitor;
 pub mod lwr;

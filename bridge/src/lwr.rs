@@ -10,6 +10,7 @@ mod sent;
 
 use core::fmt::Debug;
 
+use controller_core::fault::IndexSet;
 use controller_core::joint::{DOF, JointMatrix, JointVector};
 use fri::sequence::{self, Receiver, Sender};
 use fri::{
@@ -18,7 +19,7 @@ use fri::{
 };
 
 use crate::audit::RobotModel;
-use crate::protocol::{Arrival, Clock, Incoming, Order, Outgoing, Protocol, Report};
+use crate::protocol::{Arrival, Clock, Incoming, Order, Outgoing, Protocol, Report, Sent};
 use sent::SentTorques;
 
 /// Bytes of an answer.
@@ -99,6 +100,10 @@ impl Protocol for Lwr {
     type Answer = [u8; ANSWER_LEN];
     type Clock = Receiver;
 
+    const EMPTY: [u8; ANSWER_LEN] = [0; ANSWER_LEN];
+    const OWN_STIFFNESS: bool = true;
+    const LOST_MAX: Option<u16> = None;
+
     fn read<'a>(&self, datagram: &'a [u8]) -> Result<Incoming<'a, Self>, Error> {
         let packet = MeasurementPacket::new_checked(datagram)?;
         let Header { counter, reflected } = packet.header();
@@ -129,9 +134,11 @@ impl Protocol for Lwr {
         let rows = packet.mass_matrix().map(|row| wide(row).transpose());
         RobotModel {
             q: incoming.q,
-            mass_matrix: JointMatrix::from_rows(&rows),
-            gravity: wide(packet.gravity()),
-            jacobian: [x, y, z, rx, ry, rz],
+            mass_matrix: Some(JointMatrix::from_rows(&rows)),
+            gravity: Some(wide(packet.gravity())),
+            jacobian: Some([x, y, z, rx, ry, rz]),
+            end_effector: None,
+            holding: None,
         }
     }
 
@@ -145,7 +152,7 @@ impl Protocol for Lwr {
         incoming: &Incoming<'_, Self>,
         outgoing: &Outgoing,
         answer: &mut [u8; ANSWER_LEN],
-    ) -> JointVector<f64> {
+    ) -> Option<Sent> {
         let counter = self.sender.advance();
         let fields = Fields::of(&incoming.packet, &outgoing.order);
         let header = Header {
@@ -165,7 +172,10 @@ impl Protocol for Lwr {
         command.emit(answer);
         let torque = wide(fields.torque);
         self.sent.send(counter, torque);
-        torque
+        Some(Sent {
+            torque,
+            limited: IndexSet::NONE,
+        })
     }
 }
 

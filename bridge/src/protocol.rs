@@ -5,6 +5,7 @@
 use core::fmt::Debug;
 
 use controller_core::Step;
+use controller_core::fault::IndexSet;
 use controller_core::joint::JointVector;
 
 use crate::audit::RobotModel;
@@ -25,6 +26,18 @@ pub trait Protocol {
     /// How measurements are counted.
     type Clock: Clock;
 
+    /// No answer yet.
+    const EMPTY: Self::Answer;
+
+    /// Whether the robot has a stiffness of its own, which takes the arm over at the end
+    /// while the torque fades. One that has none takes over at once, by a way of its own:
+    /// until then the arm is held by torque.
+    const OWN_STIFFNESS: bool;
+
+    /// Lost measurements in a row with which the robot has ended the motion; none where no
+    /// number does.
+    const LOST_MAX: Option<u16>;
+
     /// Reads a measurement.
     ///
     /// # Errors
@@ -39,13 +52,22 @@ pub trait Protocol {
     /// Called once for every measurement that counts.
     fn acted(&mut self, incoming: &Incoming<'_, Self>, dead_cycles: u8) -> JointVector<f64>;
 
-    /// Writes the answer to a measurement, and returns its torque \[Nm\] as the robot reads it.
+    /// Writes the answer to a measurement; none where the robot is to get none.
     fn answer(
         &mut self,
         incoming: &Incoming<'_, Self>,
         outgoing: &Outgoing,
         answer: &mut Self::Answer,
-    ) -> JointVector<f64>;
+    ) -> Option<Sent>;
+}
+
+/// What an answer carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sent {
+    /// Torque besides what the robot adds \[Nm\], as the robot reads it.
+    pub torque: JointVector<f64>,
+    /// Joints whose step from the last torque was limited to what the robot bears.
+    pub limited: IndexSet,
 }
 
 /// What a robot says of itself, in its own words.

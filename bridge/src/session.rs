@@ -12,15 +12,18 @@
 //!  Stopping: comes to rest, then the robot's own stiffness holds it
 //! ```
 //!
-//! In every state every fresh datagram gets one answer, with the same flags. Only
-//! in `Starting`, `Moving`, `Holding` and `Stopping` does an answer carry torque.
+//! Which robot it is, and what it does and reports, is an affair of its
+//! [`Protocol`](crate::protocol::Protocol). In every state a fresh datagram gets one answer if
+//! the robot takes any. Only in `Starting`, `Moving`, `Holding` and `Stopping` does an answer
+//! carry torque; where the robot has no stiffness of its own, also behind it, until the robot
+//! has taken over.
 
 mod config;
 mod report;
 
 use controller_core::arm::ArmParameters;
 use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
-use controller_core::fault::Mode;
+use controller_core::fault::{IndexSet, Mode};
 use controller_core::joint::{JointState, JointVector, zeros};
 use controller_core::ranges::{HOLD_S, INTERVAL_FACTORS};
 use controller_core::real::Real;
@@ -30,7 +33,7 @@ use controller_core::{ConfigError, Controller, Fault, Measurement, Reference, St
 use crate::audit::Audit;
 use crate::belief::Belief;
 use crate::link_monitor::LinkMonitor;
-use crate::protocol::{Incoming, Order, Outgoing, Protocol};
+use crate::protocol::{Incoming, Order, Outgoing, Protocol, Sent};
 use crate::source::ReferenceSource;
 
 pub use self::config::{RobotAdds, SessionConfig};
@@ -105,6 +108,11 @@ impl<P: Protocol> Session<P> {
     #[must_use]
     pub fn protocol(&self) -> &P {
         &self.protocol
+    }
+
+    /// The same, for what the protocol is to be told.
+    pub fn protocol_mut(&mut self) -> &mut P {
+        &mut self.protocol
     }
 
     /// The arm that the controller believes in.
@@ -228,6 +236,11 @@ impl<P: Protocol> Session<P> {
         let wish = self.wish();
         let outgoing = Outgoing { step, order, wish };
         let sent = self.protocol.answer(&incoming, &outgoing, answer);
+        let none = Sent {
+            torque: zeros(),
+            limited: IndexSet::NONE,
+        };
+        let Sent { torque, limited } = sent.unwrap_or(none);
         self.last = Some(CycleReport {
             phase: self.phase,
             t_s: self.time_s(),
@@ -236,18 +249,24 @@ impl<P: Protocol> Session<P> {
             robot: incoming.robot,
             joints,
             step,
-            sent,
+            sent: torque,
+            limited,
         });
-        Outcome::Answered
+        match sent {
+            Some(_) => Outcome::Answered,
+            None => Outcome::Heard,
+        }
     }
 
-    /// Whether the arm cannot be where this measurement says, lost ones before it or not.
+    /// Whether the arm cannot be where this measurement says, or as fast, lost ones before it
+    /// or not.
     fn doubts(&mut self, incoming: &Incoming<'_, P>, lost: u16) -> bool {
         let interval_s = self.cycle_s * (1.0 + f64::from(lost));
         self.last.is_some_and(|last| {
             let way = incoming.q - last.joints.q;
             let (most, arm) = (self.config.doubted_max, &self.config.arm);
-            self.belief.doubts(most, arm, &way, interval_s)
+            self.belief
+                .doubts(most, arm, &way, incoming.dq.as_ref(), interval_s)
         })
     }
 
@@ -323,6 +342,9 @@ impl<P: Protocol> Session<P> {
         }
         if self.state.fault().is_some() {
             self.stop_for(StopReason::Fault);
+        }
+        if P::LOST_MAX.is_some_and(|most| lost >= most) {
+            self.stop_for(StopReason::Link);
         }
         let (limit, resume) = (self.config.hold_after, self.config.resume_after);
         let bad = self.link.judge(lost, limit, resume);
@@ -407,7 +429,8 @@ impl<P: Protocol> Session<P> {
             && self.cycle % AUDIT_EVERY == 1
         {
             let robot = self.protocol.model(incoming);
-            self.audit.compare(controller, &self.config.flange, &robot);
+            self.audit
+                .compare(controller, &self.config.arm, &self.config.flange, &robot);
         }
     }
 
@@ -472,7 +495,10 @@ impl<P: Protocol> Session<P> {
     fn ramp(&self) -> f64 {
         let since = self.in_command.saturating_sub(1) as f64 * self.cycle_s;
         let [share, ..] = quintic(since / self.config.ramp_s);
-        share * (1.0 - self.stiffness_share())
+        match P::OWN_STIFFNESS {
+            true => share * (1.0 - self.stiffness_share()),
+            false => share,
+        }
     }
 
     /// Whether the controller brakes an arm with a fault, and has not done so for as long

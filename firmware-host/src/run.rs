@@ -113,8 +113,10 @@ pub fn converse(
                 let computed = begin.elapsed();
                 match outcome {
                     Err(why) => counts.refuse(from, why),
-                    Ok(Outcome::Answered) => {
-                        end.socket.send_to(&answer, from)?;
+                    Ok(outcome @ (Outcome::Answered | Outcome::Heard)) => {
+                        if outcome == Outcome::Answered {
+                            end.socket.send_to(&answer, from)?;
+                        }
                         let latency = begin.elapsed();
                         heard = begin;
                         counts.compute.add(computed);

@@ -88,6 +88,18 @@ pub struct AuditSummary {
     pub jacobian: &'static str,
     /// Largest difference, \[m\] or \[1\].
     pub jacobian_error: f64,
+    /// The same of the end effector's pose, where the robot says it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose: Option<&'static str>,
+    /// Largest difference, \[m\] or \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose_error: Option<f64>,
+    /// The same of the joint torque at rest, where the robot measures it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holding: Option<&'static str>,
+    /// Largest difference \[Nm\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holding_nm: Option<f64>,
 }
 
 impl From<&Audit> for AuditSummary {
@@ -104,6 +116,10 @@ impl From<&Audit> for AuditSummary {
             mass_share: audit.mass_share,
             jacobian: name(audit.jacobian),
             jacobian_error: audit.jacobian_error,
+            pose: audit.pose.map(Agreement::name),
+            pose_error: audit.pose.map(|_| audit.pose_error),
+            holding: audit.holding.map(Agreement::name),
+            holding_nm: audit.holding.map(|_| audit.holding_nm),
         }
     }
 }
@@ -119,7 +135,14 @@ impl std::fmt::Display for AuditSummary {
             self.mass_share * 100.0,
             self.jacobian,
             self.jacobian_error
-        )
+        )?;
+        if let (Some(pose), Some(error)) = (self.pose, self.pose_error) {
+            write!(f, ", end effector {pose} ({error:.4})")?;
+        }
+        if let (Some(holding), Some(nm)) = (self.holding, self.holding_nm) {
+            write!(f, ", torque at rest {holding} ({nm:.2} Nm)")?;
+        }
+        Ok(())
     }
 }
 

@@ -39,8 +39,9 @@ pub struct SessionConfig {
     pub resume_after: u16,
     /// Time held after which the session stops.
     pub stop_after_s: f64,
-    /// Positions in a row that the arm cannot have reached and that count as lost; the
-    /// next one is believed, and a fault of the controller. 0: so is the first.
+    /// Measurements in a row with a position that the arm cannot have reached, or a measured
+    /// speed that it cannot have, which count as lost; the next one is believed, and a fault
+    /// of the controller. 0: so is the first.
     pub doubted_max: u8,
     /// Never move the robot: audit, and torques as they would be.
     pub dry: bool,

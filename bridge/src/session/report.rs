@@ -1,5 +1,6 @@
 //! What a session says of itself.
 
+use controller_core::fault::IndexSet;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::{ConfigError, Step};
 
@@ -65,6 +66,8 @@ pub enum StopReason {
 pub enum Outcome<E> {
     /// It is answered.
     Answered,
+    /// It counts, and the robot is to get no answer.
+    Heard,
     /// It is not a measurement that can be used: no answer.
     Rejected(E),
     /// It was answered before, or is older than one that was: no answer.
@@ -76,7 +79,7 @@ pub enum Outcome<E> {
     Unusable(ConfigError),
 }
 
-/// One answered cycle with a robot that says `R` of itself.
+/// One cycle, answered if the robot takes answers, with a robot that says `R` of itself.
 #[derive(Clone, Copy, Debug)]
 pub struct CycleReport<R> {
     /// Where the conversation stands.
@@ -95,4 +98,6 @@ pub struct CycleReport<R> {
     pub step: Option<Step<f64>>,
     /// Torque sent \[Nm\], as the robot gets it.
     pub sent: JointVector<f64>,
+    /// Joints whose step from the last torque was limited to what the robot bears.
+    pub limited: IndexSet,
 }
