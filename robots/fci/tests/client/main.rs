@@ -4,4 +4,5 @@
 mod conversation;
 mod events;
 mod hostile;
+mod pair;
 mod scripted;
