@@ -323,3 +323,29 @@ fn rows_of_the_table_differ() {
         assert!(!event.seen().is_empty() && !event.done().is_empty());
     }
 }
+
+/// The table in the documentation. `UPDATE=1` writes it anew.
+#[test]
+fn table_of_the_documentation() {
+    const BEGIN: &str = "<!-- events: made by robots/fci/tests/client/events.rs -->\n";
+    const END: &str = "<!-- end of events -->\n";
+    let mut table = String::from(
+        "| event | what is seen | what the client does | before | in it | text, for example |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    for event in Event::ALL {
+        let [before, within] = [false, true].map(|in_motion| event.exit_code(in_motion));
+        let (seen, done, text) = (event.seen(), event.done(), event.example());
+        table += &format!("| {event} | {seen} | {done} | {before} | {within} | {text} |\n");
+    }
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robots-fci-part.md");
+    let text = std::fs::read_to_string(path).expect("the document");
+    let (head, rest) = text.split_once(BEGIN).expect("the begin of the table");
+    let (committed, tail) = rest.split_once(END).expect("the end of the table");
+    if std::env::var_os("UPDATE").is_some() {
+        let text = format!("{head}{BEGIN}{table}{END}{tail}");
+        std::fs::write(path, text).expect("the document");
+    } else {
+        assert_eq!(committed, table, "UPDATE=1 cargo test -p fci --test client");
+    }
+}
