@@ -121,6 +121,21 @@ impl Named for MeasurementKind {
     ];
 }
 
+/// Which robot is at the other end of the link, by its interface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RobotInterface {
+    /// KUKA's LWR, by the Fast Research Interface.
+    #[default]
+    Lwr,
+    /// A Panda or FR3, by the Franka Control Interface.
+    Fci,
+}
+
+impl Named for RobotInterface {
+    const THING: &'static str = "robot";
+    const ALL: &'static [(&'static str, Self)] = &[("lwr", Self::Lwr), ("fci", Self::Fci)];
+}
+
 /// On or off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switch(pub bool);

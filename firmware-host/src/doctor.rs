@@ -4,8 +4,51 @@ use std::net::UdpSocket;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use cell::names::{Named as _, RobotInterface};
 use cell::realtime::{Grant, Realtime};
 use cell::timing::{TimeFigures, Times};
+use fri::{Command, Measurement};
+
+/// Datagrams of a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Link {
+    /// Its name.
+    pub robot: &'static str,
+    /// Its cycle \[s\].
+    pub cycle_s: f64,
+    /// Bytes of a measurement, and of the answer.
+    pub bytes: [usize; 2],
+    /// What else helps.
+    advice: &'static str,
+}
+
+impl Link {
+    /// That of a robot.
+    #[must_use]
+    pub fn of(robot: RobotInterface) -> Self {
+        let (cycle_s, bytes, advice) = match robot {
+            RobotInterface::Lwr => (
+                0.002,
+                [Measurement::LEN, Command::LEN],
+                "or choose a longer cycle: friOpen(4) is 4 ms",
+            ),
+            RobotInterface::Fci => (
+                0.001,
+                [fci::Version::V10.state_len(), fci::command::LEN_MAX],
+                "the cycle of a Franka robot is always 1 ms: a direct cable, no switch between",
+            ),
+        };
+        Self {
+            robot: robot.name(),
+            cycle_s,
+            bytes,
+            advice,
+        }
+    }
+}
+
+/// Bytes of the longest datagram.
+const ROOM: usize = 2048;
 
 /// How long each test takes.
 const TEST: Duration = Duration::from_secs(2);
@@ -21,20 +64,23 @@ pub struct Findings {
     pub loopback: TimeFigures,
     /// The cycle that was asked about \[s\].
     pub cycle_s: f64,
+    /// What was sent.
+    pub link: Link,
 }
 
 /// Runs the tests: about 4 s.
 ///
 /// # Errors
 /// No UDP on this PC.
-pub fn examine(cycle_s: f64, cpu: Option<usize>) -> std::io::Result<Findings> {
+pub fn examine(link: &Link, cycle_s: f64, cpu: Option<usize>) -> std::io::Result<Findings> {
     // For the calling thread, which does the tests: as the control loop.
     let realtime = Realtime::ask(cpu);
     Ok(Findings {
         realtime,
         wake: wake_up(cycle_s),
-        loopback: loopback(cycle_s)?,
+        loopback: loopback(link.bytes, cycle_s)?,
         cycle_s,
+        link: *link,
     })
 }
 
@@ -54,7 +100,7 @@ fn wake_up(cycle_s: f64) -> TimeFigures {
 
 /// Sends a datagram of a measurement's size and waits for it to come back from
 /// another thread.
-fn loopback(cycle_s: f64) -> std::io::Result<TimeFigures> {
+fn loopback([there_len, back_len]: [usize; 2], cycle_s: f64) -> std::io::Result<TimeFigures> {
     let here = UdpSocket::bind("127.0.0.1:0")?;
     let there = UdpSocket::bind("127.0.0.1:0")?;
     here.connect(there.local_addr()?)?;
@@ -62,10 +108,10 @@ fn loopback(cycle_s: f64) -> std::io::Result<TimeFigures> {
     here.set_read_timeout(Some(Duration::from_millis(100)))?;
     there.set_read_timeout(Some(Duration::from_millis(200)))?;
     let echo = thread::spawn(move || {
-        let mut bytes = [0; 916];
+        let mut bytes = [0; ROOM];
         while let Ok(length) = there.recv(&mut bytes) {
             if there
-                .send(bytes.get(..length.min(376)).unwrap_or(&bytes))
+                .send(bytes.get(..length.min(back_len)).unwrap_or(&bytes))
                 .is_err()
             {
                 break;
@@ -73,10 +119,10 @@ fn loopback(cycle_s: f64) -> std::io::Result<TimeFigures> {
         }
     });
     let mut times = Times::new();
-    let (mut bytes, start) = ([0; 916], Instant::now());
+    let (mut bytes, start) = ([0; ROOM], Instant::now());
     while start.elapsed() < TEST {
         let sent = Instant::now();
-        here.send(&bytes)?;
+        here.send(bytes.get(..there_len).unwrap_or(&bytes))?;
         // One that does not come back took at least as long as was waited for it.
         let _ = here.recv(&mut bytes);
         times.add(sent.elapsed());
@@ -138,7 +184,7 @@ impl Findings {
                 "a kernel with PREEMPT_RT, the processor governor `performance` and an idle PC \
                  make wake-ups shorter",
             );
-            advice.push("or choose a longer cycle: friOpen(4) is 4 ms");
+            advice.push(self.link.advice);
         }
         if self.realtime.cpu == Grant::NotAsked {
             advice.push("`--cpu N` keeps the loop on one processor; isolate it with isolcpus=N");

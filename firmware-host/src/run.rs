@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use bridge::lwr::{ANSWER_LEN, Lwr, RobotState};
+use bridge::protocol::Protocol;
 use bridge::session::{CycleReport, Outcome, Phase, Session};
 use bridge::source::ReferenceSource;
 use cell::terminal::tell;
@@ -17,7 +18,7 @@ use controller_core::{Axes, Target, TaskSet};
 
 use crate::peer::{Peer, Refusal};
 use crate::recorder::Recorder;
-use crate::summary::{AuditSummary, LevelSummary, LinkSummary, Summary, ending};
+use crate::summary::{AuditSummary, LevelSummary, LinkSummary, Summary};
 use cell::realtime::Realtime;
 use cell::timing::Times;
 
@@ -201,7 +202,13 @@ impl Counts {
         *self.link.rejected.entry(reason.to_string()).or_default() += 1;
     }
 
-    fn add(&mut self, session: &Session<Lwr>, cycle: &CycleReport<RobotState>, tasks: &TaskSet) {
+    /// A cycle, answered or not, with its figures.
+    pub(crate) fn add<P: Protocol>(
+        &mut self,
+        session: &Session<P>,
+        cycle: &CycleReport<P::Robot>,
+        tasks: &TaskSet,
+    ) {
         self.answered += 1;
         self.link.lost += u64::from(cycle.lost);
         for (phase, count) in PHASES.iter().zip(&mut self.phases) {
@@ -222,16 +229,33 @@ impl Counts {
         }
     }
 
-    /// Everything about a session that has ended.
+    /// What another loop has counted of its link.
+    pub(crate) fn set_link(
+        &mut self,
+        answered: u64,
+        rejected: BTreeMap<String, u64>,
+        strangers: u64,
+    ) {
+        self.answered = answered;
+        self.link.rejected = rejected;
+        self.link.strangers = strangers;
+    }
+
+    /// How long its answers took.
+    pub(crate) fn set_times(&mut self, compute: Times, latency: Times) {
+        (self.compute, self.latency) = (compute, latency);
+    }
+
+    /// Everything about a session that has ended so.
     #[must_use]
-    pub fn summary(
+    pub fn summary<P: Protocol>(
         &self,
-        session: &Session<Lwr>,
+        session: &Session<P>,
+        (exit_code, reason): (u8, String),
         scenario: &str,
         names: &[String],
         realtime: &Realtime,
     ) -> Summary {
-        let (exit_code, reason) = ending(session);
         let phases: BTreeMap<_, _> = PHASES
             .iter()
             .zip(self.phases)
@@ -254,6 +278,7 @@ impl Counts {
             realtime: realtime.clone(),
             references: None,
             recorder_dropped: 0,
+            fci: None,
         }
     }
 }

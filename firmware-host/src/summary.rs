@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use bridge::audit::{Agreement, Audit};
 use bridge::lwr::{Lwr, RobotState};
+use bridge::protocol::Protocol;
 use bridge::session::{Phase, Session, StopReason};
 use fri::{ControlScheme, InterfaceState};
 use serde::Serialize;
 
+use crate::fci::model::UrdfAudit;
 use crate::stream::StreamFigures;
 use cell::realtime::Realtime;
 use cell::timing::TimeFigures;
@@ -43,6 +45,48 @@ pub struct Summary {
     pub references: Option<StreamFigures>,
     /// Recorded cycles that found the queue full.
     pub recorder_dropped: u64,
+    /// What only a Franka robot has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fci: Option<FciSummary>,
+}
+
+/// A run with a Franka robot.
+#[derive(Clone, Debug, Serialize)]
+pub struct FciSummary {
+    /// Version of the connection.
+    pub version: u16,
+    /// What ended it: an event of the table in docs/robots.md.
+    pub event: &'static str,
+    /// Commands whose torque was limited to the step that the robot bears.
+    pub limited_cycles: u64,
+    /// The lowest share of commands that came in time, of 100 each, 0 to 1, from the hundredth
+    /// on; none of a shorter motion.
+    pub success_rate_min: Option<f64>,
+    /// States that waited behind newer ones.
+    pub overtaken: u64,
+    /// Replies that nobody had asked for.
+    pub strays: u32,
+    /// What came of AutomaticErrorRecovery, if it was asked for.
+    pub recovery: Option<&'static str>,
+    /// The robot's URDF against the table; none without one.
+    pub urdf: Option<UrdfAudit>,
+}
+
+impl std::fmt::Display for FciSummary {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "FCI version {}, {} commands limited to a step of 1 Nm",
+            self.version, self.limited_cycles
+        )?;
+        if let Some(rate) = self.success_rate_min {
+            write!(f, ", success rate at least {rate:.2}")?;
+        }
+        if let Some(recovery) = self.recovery {
+            write!(f, ", recovery: {recovery}")?;
+        }
+        Ok(())
+    }
 }
 
 /// Tracking of one level from time 0 on.
@@ -190,22 +234,30 @@ impl std::fmt::Display for Obstacle {
 /// Exit code and reason of a session that has ended, or of one that never began.
 #[must_use]
 pub fn ending(session: &Session<Lwr>) -> (u8, String) {
-    match (session.stop_reason(), session.phase()) {
+    match (wished_end(session), session.phase()) {
         (_, Phase::Waiting) => (4, "no robot: no measurement arrived".into()),
-        (Some(StopReason::Done), _) => (0, "the motion is over".into()),
-        (Some(StopReason::Asked), _) => (0, "stopped by request".into()),
-        (Some(StopReason::Link), _) => (3, "the link was lost".into()),
-        (Some(StopReason::Fault), _) => {
-            let fault = session.fault();
-            let fault = fault.map(|fault| fault.named(session.arm()).to_string());
-            (3, fault.unwrap_or_else(|| "fault".into()))
-        }
+        (Some(ending), _) => ending,
         (None, Phase::Ready) => match session.last().and_then(|cycle| Obstacle::of(&cycle.robot)) {
             Some(obstacle) => (4, format!("the robot fell silent {obstacle}")),
             None => (4, "the robot fell silent without command state".into()),
         },
         (None, _) => (4, "the robot fell silent".into()),
     }
+}
+
+/// Exit code and reason of a session that has stopped by itself.
+#[must_use]
+pub fn wished_end<P: Protocol>(session: &Session<P>) -> Option<(u8, String)> {
+    Some(match session.stop_reason()? {
+        StopReason::Done => (0, "the motion is over".into()),
+        StopReason::Asked => (0, "stopped by request".into()),
+        StopReason::Link => (3, "the link was lost".into()),
+        StopReason::Fault => {
+            let fault = session.fault();
+            let fault = fault.map(|fault| fault.named(session.arm()).to_string());
+            (3, fault.unwrap_or_else(|| "fault".into()))
+        }
+    })
 }
 
 #[cfg(test)]

@@ -138,6 +138,57 @@ const BAD: &[(&[&str], &[&str])] = &[
         &["/proc/none/s.json"],
     ),
     (&["doctor", "--cycle-ms", "0"], &["--cycle-ms", "0.1 to 20"]),
+    (
+        &["doctor", "--robot", "fri"],
+        &["robot", "unknown 'fri'", "did you mean 'fci'"],
+    ),
+    (
+        &["run", "--robot", "lrw"],
+        &["unknown 'lrw'", "did you mean 'lwr'"],
+    ),
+    (
+        &["run", "--robot", "fci"],
+        &["--address: none", "the address of the robot"],
+    ),
+    (
+        &["run", "--robot", "fci", "--address", "127.0.0.1:1337"],
+        &["--address", "without a port"],
+    ),
+    (
+        &[
+            "run",
+            "--robot",
+            "fci",
+            "--address",
+            "127.0.0.1",
+            "two-levl-fr3",
+        ],
+        &["did you mean 'two-level-fr3'"],
+    ),
+    (
+        &["run", "two-level", "--scenario", "two-level"],
+        &["--scenario"],
+    ),
+    (
+        &["run", "--robot", "fci", "--listen", "127.0.0.1:0"],
+        &["--listen: 127.0.0.1:0", "only with --robot lwr"],
+    ),
+    (
+        &["run", "--robot", "fci", "--robot-adds", "gravity"],
+        &["--robot-adds: gravity", "only with --robot lwr"],
+    ),
+    (
+        &["run", "--address", "127.0.0.1"],
+        &["--address: 127.0.0.1", "only with --robot fci"],
+    ),
+    (
+        &["run", "--recover"],
+        &["--recover", "only with --robot fci"],
+    ),
+    (
+        &["run", "--robot", "fci", "--collision-torque", "0"],
+        &["--collision-torque", "above 0, at most 1000"],
+    ),
 ];
 
 #[test]

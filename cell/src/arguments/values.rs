@@ -1,6 +1,6 @@
 //! Values of options, as both programs read them. Errors say what is allowed.
 
-use std::net::{SocketAddr, ToSocketAddrs};
+use std::net::{IpAddr, SocketAddr, ToSocketAddrs};
 
 use crate::ranges::{Number, Range};
 
@@ -52,9 +52,21 @@ pub fn peer(text: &str) -> Result<SocketAddr, String> {
         .ok_or_else(|| "ADDRESS:PORT, such as 192.168.0.150:49938".to_string())
 }
 
+/// The address of one other device, whose port is known.
+///
+/// # Errors
+/// No address, a name that has none, or one that nothing can be sent to.
+pub fn device(text: &str) -> Result<IpAddr, String> {
+    resolve((text, 1))
+        .ok()
+        .map(|address| address.ip())
+        .filter(|address| !address.is_unspecified())
+        .ok_or_else(|| "an address without a port, such as 172.16.0.2".to_string())
+}
+
 /// The first address of a name, IPv4 first: the robot speaks nothing else.
-fn resolve(text: &str) -> Result<SocketAddr, ()> {
-    let all: Vec<_> = text.to_socket_addrs().map_err(|_| ())?.collect();
+fn resolve(name: impl ToSocketAddrs) -> Result<SocketAddr, ()> {
+    let all: Vec<_> = name.to_socket_addrs().map_err(|_| ())?.collect();
     let v4 = all.iter().find(|address| address.is_ipv4());
     v4.or(all.first()).copied().ok_or(())
 }
@@ -71,6 +83,16 @@ mod tests {
         assert!(address("0.0.0.0:49938").is_ok());
         for nowhere in ["0.0.0.0:49938", "127.0.0.1:0", "127.0.0.1", "", "x y:1"] {
             assert!(peer(nowhere).is_err(), "{nowhere}");
+        }
+    }
+
+    #[test]
+    fn a_device_has_no_port() {
+        let local: IpAddr = [127, 0, 0, 1].into();
+        assert_eq!(device("127.0.0.1"), Ok(local));
+        assert_eq!(device("localhost"), Ok(local));
+        for nowhere in ["127.0.0.1:1337", "0.0.0.0", "", "x y"] {
+            assert!(device(nowhere).is_err(), "{nowhere}");
         }
     }
 

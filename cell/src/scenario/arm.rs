@@ -106,6 +106,12 @@ impl EquippedArm {
         point.or_else(|| self.parameters.point(name))
     }
 
+    /// The tool; none without one.
+    #[must_use]
+    pub fn tool(&self) -> Option<&Tool> {
+        self.tool.as_ref()
+    }
+
     /// The frame of the tool; none without one.
     #[must_use]
     pub fn tool_frame(&self) -> Option<LinkFrame> {

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-use bridge::lwr::{Lwr, RobotState};
-use bridge::protocol::Report;
+use bridge::protocol::{Protocol, Report};
 use bridge::session::{CycleReport, Phase, Session};
 use cell::invalid::Invalid;
 use cell::terminal::tell;
@@ -105,8 +104,13 @@ impl Teller {
         }
     }
 
-    pub(super) fn tell(&mut self, session: &Session<Lwr>, cycle: &CycleReport<RobotState>) {
-        let obstacle = Obstacle::of(&cycle.robot);
+    /// A cycle, and what keeps the robot from taking torque in it.
+    pub(super) fn tell<P: Protocol>(
+        &mut self,
+        session: &Session<P>,
+        cycle: &CycleReport<P::Robot>,
+        obstacle: Option<Obstacle>,
+    ) {
         if obstacle != self.obstacle {
             self.obstacle = obstacle;
             // Nothing else says why nothing moves.
@@ -160,6 +164,9 @@ pub(super) fn closing(summary: &Summary) -> String {
         let _ = writeln!(text, "references: {references}");
     }
     let _ = writeln!(text, "robot's model: {}", summary.audit);
+    if let Some(fci) = &summary.fci {
+        let _ = writeln!(text, "{fci}");
+    }
     let _ = writeln!(text, "compute: {}", summary.compute);
     let _ = writeln!(text, "latency: {}", summary.latency);
     text
