@@ -11,7 +11,7 @@ use cell::names::PlantKind;
 use cell::realtime::Realtime;
 use cell::scenario::{Scenario, ScenarioSource};
 use firmware_host::run::{Endpoint, converse};
-use firmware_host::summary::Summary;
+use firmware_host::summary::{Summary, ending};
 use hil_sim::loopback::{self, BridgeClient};
 use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{LinkFigures, LwrRobot, RobotOptions, RobotSetup};
@@ -94,6 +94,7 @@ fn over_udp(scenario: &Scenario, seed: u64, lockstep: bool) -> (Vec<u8>, LinkFig
     let names = ["flange".to_string()];
     let summary = counts.expect("a socket that works").summary(
         &session,
+        ending(&session),
         &scenario.name,
         &names,
         &Realtime::default(),

@@ -22,6 +22,7 @@ use firmware_host::peer::IN_A_ROW;
 use firmware_host::recorder;
 use firmware_host::run::{Endpoint, converse};
 use firmware_host::stream::{Setpoint, Stream};
+use firmware_host::summary::ending;
 use hil_sim::plant::PlantOptions;
 use hil_sim::robot::{LwrRobot, MEASUREMENT_BYTES, RobotOptions, RobotSetup};
 
@@ -367,7 +368,13 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     });
     let names: Vec<_> = scenario.levels.iter().map(|level| level.label()).collect();
     let counts = counts.expect("a socket that works");
-    let summary = counts.summary(&session, &scenario.name, &names, &Realtime::default());
+    let summary = counts.summary(
+        &session,
+        ending(&session),
+        &scenario.name,
+        &names,
+        &Realtime::default(),
+    );
     // The port closes, and with it the robot's end.
     drop(end);
     server.join().expect("the robot");
