@@ -23,6 +23,7 @@ mod event;
 mod facts;
 mod machine;
 mod outgoing;
+mod said;
 
 pub use event::{Awaited, Cause, Event, Stop};
 pub use facts::{Duty, Facts, ModelSink, Phase, Start};

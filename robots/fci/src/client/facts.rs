@@ -5,7 +5,7 @@ use crate::request::{CollisionBehavior, Load};
 use crate::robot_error::RobotErrors;
 use crate::state::{DOF, StatePacket};
 
-use super::event::Stop;
+use super::event::{Cause, Stop};
 
 /// Where the conversation stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,31 @@ impl Facts {
         self.robot_mode == RobotMode::Move
             && self.motion_generator_mode == generator.into()
             && self.controller_mode == Controller::External.into()
+    }
+
+    /// What stops a motion.
+    pub(super) fn abort(&self) -> Option<Cause> {
+        match self.robot_mode {
+            RobotMode::UserStopped => Some(Cause::UserStop),
+            RobotMode::Reflex => Some(Cause::Reflex(self.reasons())),
+            _ => None,
+        }
+    }
+
+    /// A mode in which no motion runs, and which is not where motions lead.
+    pub(super) fn wrong(&self) -> Option<Cause> {
+        let (found, needed) = (self.robot_mode, RobotMode::Move);
+        let fine = matches!(found, RobotMode::Idle | RobotMode::Move);
+        (!fine).then_some(Cause::WrongMode { found, needed })
+    }
+
+    /// Why there is a reflex.
+    pub(super) fn reasons(&self) -> RobotErrors {
+        if self.reflex_reason.is_empty() {
+            self.errors
+        } else {
+            self.reflex_reason
+        }
     }
 }
 

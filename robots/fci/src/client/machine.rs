@@ -1,19 +1,17 @@
 //! The machine.
 
-use crate::error::Error;
 use crate::kind::Kind;
 use crate::modes::RobotMode;
-use crate::reply::Reply;
 use crate::request::{Connect, Move, Request};
-use crate::robot_error::RobotErrors;
 use crate::sequence::Sequence;
 use crate::status::{ConnectStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus};
-use crate::stream::{HEADER_LEN, Message, Stream};
+use crate::stream::{HEADER_LEN, Stream};
 use crate::version::Version;
 
 use super::event::{Awaited, Cause, Stop};
 use super::facts::{Duty, Facts, ModelSink, Phase, Start};
 use super::outgoing::Outgoing;
+use super::said::{Said, is_reply, said};
 
 /// States that pass before what is waited for counts as not coming: 1 s.
 pub const PATIENCE: u32 = 1000;
@@ -79,18 +77,6 @@ struct End {
     seen: Option<Cause>,
     /// Why it has ended, while the robot recovers.
     verdict: Option<Cause>,
-}
-
-/// A reply that was waited for.
-enum Said {
-    Connect(ConnectStatus, u16),
-    Model(ModelStatus),
-    Setter(Kind, SetterStatus),
-    /// First reply to the Move with this id.
-    Started(u32, MoveStatus),
-    /// Its second one.
-    Ended(MoveStatus),
-    Recovery(RecoveryStatus),
 }
 
 impl Client {
@@ -352,7 +338,7 @@ impl Client {
     /// Before the state shows the motion.
     fn begin(&mut self, facts: &Facts) {
         if self.motion.is_some() {
-            if let Some(trouble) = abort(facts) {
+            if let Some(trouble) = facts.abort() {
                 self.end.seen = Some(trouble);
                 self.enter(Phase::Ending);
             } else if facts.runs(Move::torque(self.version).generator) {
@@ -379,7 +365,7 @@ impl Client {
             (RobotMode::Reflex, _) if self.may_recover => self.recover(),
             // Old states may show it for a while behind a recovery.
             (RobotMode::Reflex, _) if self.recovery.is_none() || self.waited > PATIENCE => {
-                self.stop(Cause::Reflex(reasons(facts)));
+                self.stop(Cause::Reflex(facts.reasons()));
             }
             (RobotMode::UserStopped, _) if self.waited > PATIENCE => self.stop(Cause::UserStop),
             (found, _) if self.waited > PATIENCE => self.stop(Cause::WrongMode {
@@ -408,7 +394,7 @@ impl Client {
         }
         let runs = facts.runs(Move::torque(self.version).generator);
         if self.end.seen.is_none() {
-            self.end.seen = abort(facts).or(if runs { None } else { wrong(facts) });
+            self.end.seen = facts.abort().or(if runs { None } else { facts.wrong() });
         }
         if let (Some(status), false) = (self.end.reply, runs) {
             self.conclude(status, facts);
@@ -433,7 +419,7 @@ impl Client {
             (None, Wish::Halt) if matches!(status, MoveStatus::Success | MoveStatus::Preempted) => {
                 Cause::Halted
             }
-            _ if status == MoveStatus::ReflexAborted => Cause::Reflex(reasons(facts)),
+            _ if status == MoveStatus::ReflexAborted => Cause::Reflex(facts.reasons()),
             _ => Cause::Aborted(status),
         };
         if matches!(cause, Cause::Reflex(_)) && self.may_recover {
@@ -515,68 +501,5 @@ impl Client {
             self.asked = None;
             self.phase = Phase::Stopped(Stop { cause, in_motion });
         }
-    }
-}
-
-/// Whether a message answers the request that waits, if that is of this kind.
-fn is_reply(
-    version: Version,
-    asked: Option<(u32, Kind)>,
-    kind: Kind,
-    (id, code): (u32, u32),
-) -> bool {
-    asked == Some((id, kind)) && kind.code(version) == Ok(code)
-}
-
-/// What a message says, if it is a reply that is waited for.
-fn said(
-    version: Version,
-    asked: Option<(u32, Kind)>,
-    motion: Option<u32>,
-    message: &Message<'_>,
-) -> Result<Option<Said>, Error> {
-    let waiting =
-        asked.filter(|&(_, kind)| is_reply(version, asked, kind, (message.id, message.code)));
-    let ended = motion.map(|id| (id, Kind::Move));
-    let ends = is_reply(version, ended, Kind::Move, (message.id, message.code));
-    if waiting.is_none() && !ends {
-        return Ok(None);
-    }
-    Ok(Some(match Reply::parse(version, message)? {
-        Reply::Connect { status, version } => Said::Connect(status, version),
-        Reply::RobotModel { status, .. } => Said::Model(status),
-        Reply::Setter { setter, status } => Said::Setter(setter.kind(), status),
-        Reply::Move(status) if ends => Said::Ended(status),
-        Reply::Move(status) => Said::Started(message.id, status),
-        Reply::Recovery(status) => Said::Recovery(status),
-        // None of them is asked for, but for StopMove, whose reply is not waited for.
-        Reply::StopMove(_) | Reply::CartesianLimit { .. } | Reply::ModelLibrary { .. } => {
-            return Ok(None);
-        }
-    }))
-}
-
-/// What stops a motion, as a state shows it.
-fn abort(facts: &Facts) -> Option<Cause> {
-    match facts.robot_mode {
-        RobotMode::UserStopped => Some(Cause::UserStop),
-        RobotMode::Reflex => Some(Cause::Reflex(reasons(facts))),
-        _ => None,
-    }
-}
-
-/// A mode in which no motion runs, and which is not where motions lead.
-fn wrong(facts: &Facts) -> Option<Cause> {
-    let (found, needed) = (facts.robot_mode, RobotMode::Move);
-    let fine = matches!(found, RobotMode::Idle | RobotMode::Move);
-    (!fine).then_some(Cause::WrongMode { found, needed })
-}
-
-/// Why there is a reflex.
-fn reasons(facts: &Facts) -> RobotErrors {
-    if facts.reflex_reason.is_empty() {
-        facts.errors
-    } else {
-        facts.reflex_reason
     }
 }
