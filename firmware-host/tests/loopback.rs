@@ -41,7 +41,7 @@ fn in_process(scenario: &Scenario, seed: u64) -> Vec<u8> {
     let config = scenario.session_config(0, scenario.duration_s);
     let mut robot = robot(scenario, seed);
     let config = config.expect("a good scenario");
-    let mut client = BridgeClient::new(config, scenario);
+    let mut client = BridgeClient::new(Lwr::new(), config, scenario);
     loopback::run(&mut robot, &mut client, &[], |instant, _| {
         trace.push(instant)
     })

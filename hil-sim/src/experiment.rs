@@ -4,6 +4,7 @@ mod driver;
 
 use std::io;
 
+use bridge::lwr::Lwr;
 use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
 use controller_core::{Controller, ControllerConfig, Measurement, Reference, State};
@@ -114,7 +115,7 @@ impl Experiment {
             plant_options: self.options,
             options: RobotOptions::default(),
         });
-        let mut client = BridgeClient::new(config, &self.scenario);
+        let mut client = BridgeClient::new(Lwr::new(), config, &self.scenario);
         loopback::run(&mut robot, &mut client, &[], |instant, _| {
             progress(instant.t_s / self.scenario.duration_s);
             sink(instant)

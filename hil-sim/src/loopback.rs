@@ -5,45 +5,45 @@
 
 use std::io;
 
-use bridge::lwr::{ANSWER_LEN, Lwr};
+use bridge::protocol::Protocol;
 use bridge::session::{Outcome, Session, SessionConfig};
 
 use crate::interrupt;
 use crate::link::{Expect, Fault, LockStep, Peer};
-use crate::robot::{LwrBox, LwrRobot};
+use crate::robot::{ControlBox, Robot};
 use cell::scenario::{Scenario, ScenarioSource};
 use record::run::Sample;
 
-/// The bridge as a client in this process.
+/// The bridge as a client in this process, with its end of the robot's protocol.
 #[derive(Debug)]
-pub struct BridgeClient {
+pub struct BridgeClient<P: Protocol> {
     /// The conversation.
-    pub session: Session<Lwr>,
+    pub session: Session<P>,
     source: ScenarioSource,
 }
 
-impl BridgeClient {
+impl<P: Protocol> BridgeClient<P> {
     /// A client that follows the motion of `scenario`.
     #[must_use]
-    pub fn new(config: SessionConfig, scenario: &Scenario) -> Self {
+    pub fn new(protocol: P, config: SessionConfig, scenario: &Scenario) -> Self {
         Self {
-            session: Session::new(Lwr::new(), config),
+            session: Session::new(protocol, config),
             source: ScenarioSource::new(scenario),
         }
     }
 }
 
-impl Peer<LwrBox> for BridgeClient {
+impl<B: ControlBox, P: Protocol> Peer<B> for BridgeClient<P> {
     fn exchange(
         &mut self,
         measurement: &[u8],
         _: Expect,
         answers: &mut Vec<Vec<u8>>,
     ) -> io::Result<bool> {
-        let mut answer = [0; ANSWER_LEN];
+        let mut answer = P::EMPTY;
         let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
         if outcome == Outcome::Answered {
-            answers.push(answer.to_vec());
+            answers.push(answer.as_ref().to_vec());
         }
         // What it doubts it leaves without answer: it is not gone.
         Ok(true)
@@ -55,11 +55,11 @@ impl Peer<LwrBox> for BridgeClient {
 ///
 /// # Errors
 /// Those of `sink`.
-pub fn run(
-    robot: &mut LwrRobot,
-    client: &mut BridgeClient,
+pub fn run<B: ControlBox, P: Protocol>(
+    robot: &mut Robot<B>,
+    client: &mut BridgeClient<P>,
     faults: &[Fault],
-    mut sink: impl FnMut(&Sample, &Session<Lwr>) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample, &Session<P>) -> io::Result<()>,
 ) -> io::Result<()> {
     let cycle_s = robot.setup().scenario.cycle_s();
     let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);

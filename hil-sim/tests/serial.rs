@@ -77,7 +77,7 @@ fn over_a_serial_line_every_bit_is_that_of_the_loop_in_one_process() {
 
     let mut expected = Trace::new(Vec::new(), &scenario).expect("memory");
     let config = scenario.session_config(0, scenario.duration_s);
-    let mut client = BridgeClient::new(config.expect("a good scenario"), &scenario);
+    let mut client = BridgeClient::new(Lwr::new(), config.expect("a good scenario"), &scenario);
     loopback::run(&mut robot(&scenario), &mut client, &[], |instant, _| {
         expected.push(instant)
     })

@@ -1,6 +1,7 @@
 //! The bridge and the simulated robot over a link that loses, delays and
 //! freezes, in virtual time: the figures that a user may count on.
 
+use bridge::lwr::Lwr;
 use bridge::session::Phase;
 use cell::names::PlantKind;
 use cell::scenario::Scenario;
@@ -47,7 +48,7 @@ fn run(wish: &Wish<'_>) -> Run {
     let scenario = Scenario::find("two-level").expect("built in");
     let config = scenario.session_config(wish.dead_cycles as u8, scenario.duration_s);
     let config = config.expect("a good scenario");
-    let mut client = BridgeClient::new(config, &scenario);
+    let mut client = BridgeClient::new(Lwr::new(), config, &scenario);
     let mut robot = LwrRobot::new(RobotSetup {
         scenario,
         plant: wish.plant,
