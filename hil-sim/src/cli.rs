@@ -48,7 +48,7 @@ struct Cli {
 enum Command {
     /// Run a scenario and judge it: report, summary, trace and figures in the output folder
     Run(Box<RunOptions>),
-    /// Be the robot: FRI over UDP, for a client that runs elsewhere
+    /// Be the robot, for a client that runs elsewhere: KUKA's FRI over UDP, or Franka's FCI
     #[command(
         after_help = "Lines on standard input while it serves: push POINT FX FY FZ SECONDS \
 (N, base-plate axes), release, drives off, drives on, quit."

@@ -10,7 +10,7 @@ use crate::metrics::{
     self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
     TorqueFigures,
 };
-use crate::robot::LinkFigures;
+use crate::robot::{FciFigures, LinkFigures};
 use crate::sample::Stop;
 use cell::names::{MeasurementKind, Named, PlantKind};
 
@@ -101,6 +101,8 @@ pub struct Summary {
     pub after_fault: Option<AfterFault>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<LinkFigures>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fci: Option<FciFigures>,
 }
 
 impl Summary {
@@ -157,6 +159,7 @@ impl Summary {
             faults,
             after_fault: ending.seen(),
             link: None,
+            fci: None,
         }
     }
 

@@ -1,9 +1,14 @@
 //! `hil-sim serve`: the robot's side on a socket.
 
+mod fci;
+mod kind;
+
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+
+use kind::Kind;
 
 use super::files::{Files, announce};
 use super::notes;
@@ -13,9 +18,11 @@ use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
-    Krl, LinkFigures, LwrRobot, RatingOptions, RobotAdds, RobotOptions, RobotSetup, scheme_named,
+    FciOptions, Krl, LinkFigures, LwrRobot, RatingOptions, RobotAdds, RobotOptions, RobotSetup,
+    scheme_named,
 };
-use crate::serve::{Client, End, Operator, Serial, Service, Transport, Udp};
+use crate::serve::{Client, End, FciService, Operator, Serial, Service, Transport, Udp};
+use crate::summary::Summary;
 use cell::arguments::values::{number, peer, processor, whole};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, PlantKind};
@@ -43,6 +50,9 @@ const JITTER: Range<f64> = Range::new(0.0, 1000.0);
 const MISSES: Range<u32> = Range::new(0, 1_000_000);
 const GOOD_FOR_S: Range<f64> = Range::new(0.0, 60.0);
 
+/// Versions of the FCI.
+const VERSIONS: Range<u16> = Range::new(5, 10);
+
 /// What the robot lets into command state \[mrad\], \[Nm\].
 const ENTRY_MRAD: Range<f64> = Range::new(0.0, 1000.0);
 const ENTRY_NM: Range<f64> = Range::new(0.0, 200.0);
@@ -55,9 +65,13 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
-    #[arg(long, default_value = "two-level",
-        help = format!("Built-in scenario ({}), or a TOML file: arm, start, contacts, what is judged", built_in_names()))]
-    scenario: String,
+    /// Which robot: lwr (KUKA's FRI), fci (Franka's control interface)
+    #[arg(long, default_value = "lwr")]
+    robot: String,
+    #[arg(long,
+        help = format!("Built-in scenario ({}), or a TOML file: arm, start, contacts, what is \
+            judged [default: two-level, of fci two-level-fr3]", built_in_names()))]
+    scenario: Option<String>,
     /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
     plant: String,
@@ -67,6 +81,12 @@ pub struct ServeOptions {
     /// Seed of mismatch, noise and faults, whole numbers from 0
     #[arg(long, default_value_t = 1, value_parser = whole(SEED))]
     seed: u64,
+    #[arg(long, value_parser = whole(VERSIONS),
+        help = format!("Of fci: version of the interface, {VERSIONS}; Panda: 5 [default: 10]"))]
+    version: Option<u16>,
+    /// Of fci: where it listens, ADDRESS or ADDRESS:PORT [default: 127.0.0.1:1337]
+    #[arg(long, value_parser = fci::address)]
+    address: Option<SocketAddr>,
     /// Where the client is, ADDRESS:PORT [default: 127.0.0.1:49938]
     #[arg(long, value_parser = peer)]
     remote: Option<SocketAddr>,
@@ -201,13 +221,85 @@ impl ServeOptions {
     /// # Errors
     /// Whatever was given that cannot be used, and the socket's errors.
     pub fn run(&self) -> Result<u8, Invalid> {
+        let kind = Kind::from_name(&self.robot)?;
+        self.check_robot(kind)?;
+        match kind {
+            Kind::Lwr => self.run_lwr(),
+            Kind::Fci => self.run_fci(),
+        }
+    }
+
+    /// No option of the other robot.
+    fn check_robot(&self, kind: Kind) -> Result<(), Invalid> {
+        let fci = [
+            ("--version", self.version.is_some()),
+            ("--address", self.address.is_some()),
+        ];
+        kind.refuse(Kind::Fci, &fci)?;
+        let thresholds = self.thresholds.options()?;
+        let lwr = [
+            ("--remote", self.remote.is_some()),
+            ("--port", self.port.is_some()),
+            ("--serial", self.serial.is_some()),
+            ("--local-port", self.local_port != 0),
+            ("--krl", self.krl != "auto"),
+            ("--scheme", self.scheme != "joint-impedance"),
+            ("--robot-adds", self.robot_adds != "gravity"),
+            ("a threshold", thresholds != RobotOptions::default()),
+        ];
+        kind.refuse(Kind::Lwr, &lwr)
+    }
+
+    fn run_fci(&self) -> Result<u8, Invalid> {
+        let service = FciService {
+            address: self.address.unwrap_or(([127, 0, 0, 1], fci::PORT).into()),
+            lockstep: self.lockstep,
+            faults: self.faults()?,
+            wait_s: self.wait,
+        };
+        let RobotSetup {
+            scenario,
+            plant,
+            contacts,
+            seed,
+            plant_options,
+            options,
+        } = self.setup(Kind::Fci)?;
+        let out = self.folder(&scenario);
+        let number = self.version.unwrap_or(VERSIONS.max);
+        let mut fci = FciOptions::of(&scenario, number).map_err(Invalid::line)?;
+        fci.drives_off_s = options.drives_off_s;
+        let setup = RobotSetup {
+            scenario,
+            plant,
+            contacts,
+            seed,
+            plant_options,
+            options: fci,
+        };
+        let Some(served) = fci::serve(&service, setup, self.cpu, &out)? else {
+            return Ok(NO_CLIENT);
+        };
+        let fci::Served {
+            files,
+            robot,
+            summary,
+            text,
+        } = served;
+        self.conclude(files, robot.setup(), &summary, &text, &out)
+    }
+
+    /// The output folder.
+    fn folder(&self, scenario: &Scenario) -> PathBuf {
+        let own = || Path::new("out").join(format!("serve-{}", scenario.name));
+        self.out.clone().unwrap_or_else(own)
+    }
+
+    fn run_lwr(&self) -> Result<u8, Invalid> {
         let service = self.service()?;
-        let setup = self.setup()?;
+        let setup = self.setup(Kind::Lwr)?;
         let scenario = setup.scenario.clone();
-        let out = self
-            .out
-            .clone()
-            .unwrap_or_else(|| Path::new("out").join(format!("serve-{}", scenario.name)));
+        let out = self.folder(&scenario);
         // By the least cycle and the longest run that the protocol has it stays bounded.
         announce(&scenario, f64::INFINITY)?;
         let mut client: Box<dyn Transport> = match &service.client {
@@ -245,20 +337,31 @@ impl ServeOptions {
         if let Some(link) = &mut summary.link {
             link.realtime = realtime;
         }
+        let line = summary.link.as_ref().map_or(String::new(), link_line);
+        self.conclude(files, robot.setup(), &summary, &line, &out)
+    }
+
+    /// Writes the files, prints the rows, with `line` on the link; the exit code.
+    fn conclude(
+        &self,
+        files: Files,
+        setup: &RobotSetup<impl Clone>,
+        summary: &Summary,
+        line: &str,
+        out: &Path,
+    ) -> Result<u8, Invalid> {
+        let scenario = &setup.scenario;
         let command = own_command();
-        let setup = robot.setup();
         let choices = Choices {
             measurement: MeasurementKind::Fri,
             options: setup.plant_options,
             ..Choices::default()
         };
-        files.finish(&scenario, &summary, choices, Some(&command))?;
-        let mut text = heading(&scenario, setup.plant, setup.contacts, setup.seed);
-        text += &table(&[&summary]);
-        if let Some(link) = &summary.link {
-            text += &link_line(link);
-        }
-        text += &footer(&summary, &out);
+        files.finish(scenario, summary, choices, Some(&command))?;
+        let mut text = heading(scenario, setup.plant, setup.contacts, setup.seed);
+        text += &table(&[summary]);
+        text += line;
+        text += &footer(summary, out);
         print(&text)?;
         Ok(summary.verdict.exit_code())
     }
@@ -279,7 +382,6 @@ impl ServeOptions {
         }
         let here = |port| SocketAddr::from(([127, 0, 0, 1], port));
         let remote = self.remote.unwrap_or(here(self.port.unwrap_or(PORT)));
-        let faults = self.fault.iter().map(|spec| spec.parse::<Fault>());
         Ok(Service {
             client: match &self.serial {
                 Some(path) => Client::Serial(path.clone()),
@@ -289,13 +391,19 @@ impl ServeOptions {
                 },
             },
             lockstep: self.lockstep,
-            faults: faults.collect::<Result<_, _>>()?,
+            faults: self.faults()?,
             wait_s: self.wait,
         })
     }
 
-    fn setup(&self) -> Result<RobotSetup<RobotOptions>, Invalid> {
-        let mut scenario = Scenario::find(&self.scenario)?;
+    fn faults(&self) -> Result<Vec<Fault>, Invalid> {
+        let faults = self.fault.iter().map(|spec| spec.parse::<Fault>());
+        faults.collect()
+    }
+
+    fn setup(&self, kind: Kind) -> Result<RobotSetup<RobotOptions>, Invalid> {
+        let named = self.scenario.as_deref().unwrap_or(kind.scenario());
+        let mut scenario = Scenario::find(named)?;
         scenario.duration_s = self.duration.unwrap_or(scenario.duration_s);
         // That of the scenario may be too short for the protocol.
         let cycle = self.cycle_ms.unwrap_or(scenario.cycle_ms);

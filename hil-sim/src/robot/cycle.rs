@@ -76,6 +76,7 @@ impl<B: ControlBox> Robot<B> {
         if !self.control_box.has_begun() || self.ending.is_over() {
             return None;
         }
+        let over = self.is_finished();
         let seen = self.look();
         let unsafe_motion = UnsafeMotion::of(&seen.truth, &self.parameters);
         if let Some(lost @ UnsafeMotion::NotFinite { .. }) = unsafe_motion {
@@ -120,7 +121,7 @@ impl<B: ControlBox> Robot<B> {
         self.ending
             .cycle(self.clock_s(), &seen.truth, unsafe_motion, &acting);
         let t_s = self.time_s();
-        self.counters.cycle(turn.commanded, t_s.is_some());
+        self.counters.cycle(turn.commanded, t_s.is_some() && !over);
         for text in self.control_box.take_messages() {
             let robot_t_s = self.robot_time_s();
             self.counters.event(Event {
@@ -135,6 +136,10 @@ impl<B: ControlBox> Robot<B> {
         let limit = &self.torque_limit;
         let residual = (told.residual).zip_map(limit, |r, limit| r.clamp(-limit, limit));
         self.move_on(&driving);
+        if over {
+            // A client may end its motion later: the run is judged to the end of the scenario.
+            return None;
+        }
 
         let (t_s, start) = (t_s?, self.start.as_ref()?);
         let scenario = &self.setup.scenario;

@@ -1,5 +1,6 @@
 //! The robot's side: an arm, its control box, and what they report. What differs from robot
-//! to robot is behind [`ControlBox`]; the LWR is [`LwrBox`].
+//! to robot is behind [`ControlBox`]; the LWR is [`LwrBox`], Panda
+//! and FR3 are [`FciBox`].
 //!
 //! A [`Robot`] is driven cycle by cycle and passes byte arrays, so that a
 //! datagram socket and a client in the same process see exactly the same:
@@ -27,11 +28,15 @@ mod control_box;
 mod counters;
 mod cycle;
 mod driving;
+mod fci;
 mod figures;
 mod lwr;
 mod model;
 mod summary;
 
+pub use self::fci::{
+    Broken, FciBox, FciFigures, FciOptions, Handled, Received, StateDatagram, urdf,
+};
 pub use arm::{Robot, RobotSetup};
 pub(crate) use control_box::cycles;
 pub use control_box::{Answer, ControlBox, Now, Seen, Surroundings, Told, Turn};
@@ -50,3 +55,6 @@ pub use model::RobotModel;
 
 /// The LWR.
 pub type LwrRobot = Robot<LwrBox>;
+
+/// A Panda or FR3.
+pub type FciRobot = Robot<FciBox>;

@@ -2,6 +2,7 @@
 //! it was told, and takes answers from there only.
 
 mod console;
+mod fci;
 mod paced;
 mod serial;
 mod service;
@@ -12,6 +13,7 @@ mod udp;
 use std::io;
 use std::time::Instant as Clock;
 
+pub use self::fci::{FciService, FciSockets};
 pub use console::{Operator, Wish};
 pub use serial::Serial;
 pub use service::{Client, End, Service};

@@ -338,7 +338,7 @@ fn table_of_the_documentation() {
         let (seen, done, text) = (event.seen(), event.done(), event.example());
         table += &format!("| {event} | {seen} | {done} | {before} | {within} | {text} |\n");
     }
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robots-fci-part.md");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robots.md");
     let text = std::fs::read_to_string(path).expect("the document");
     let (head, rest) = text.split_once(BEGIN).expect("the begin of the table");
     let (committed, tail) = rest.split_once(END).expect("the end of the table");
