@@ -2,7 +2,8 @@
 //! under callgrind, which counts each call of a function in `cases::stages` by itself.
 //!
 //! `count_step step` runs whole cycles in random and adversarial states (`quick`: a
-//! few), the same of the FR3 in a tenth of them, and cycles in which every reference jumps;
+//! few), the same of the FR3 in a tenth of them, cycles in which every reference jumps, and
+//! cycles of 7, 9 and 12 rows, with all levels changing and without;
 //! `count_step arms` a few cycles of every arm, `count_step stages` every stage alone,
 //! `count_step resolver` the velocity-level resolver in the states of `step`. The order of the
 //! calls is printed, one name per line.
@@ -14,7 +15,7 @@ mod cases;
 
 use std::hint::black_box;
 
-use arms::{FR3, LWR_IV};
+use arms::{FR3, LWR_IV, LWR_IV_DAMPING, LWR_IV_STIFFNESS};
 use cases::stages::{resolve, stage, step};
 use cases::{Case, Input, levels, levels_of, states};
 use controller_core::arm::ArmParameters;
@@ -23,7 +24,10 @@ use controller_core::cycle::{self, Data};
 use controller_core::fault::Status;
 use controller_core::real::Real;
 use controller_core::resolver::ResolverState;
-use controller_core::{Controller, State, Target};
+use controller_core::{
+    Axes, Change, Controller, ControllerConfig, Link, Measurement, NullSpace, Order, State, Target,
+    Task, TaskGains, TaskSet,
+};
 
 /// What decides how long a cycle is: whether a level is released, whether the arm is bent for it,
 /// and the pivots of the projection.
@@ -91,6 +95,71 @@ fn joins<T: Real>(case: &Case<T>, inputs: &[Input]) {
         let all = joining == case.controller.level_count() + 1;
         println!("{} {}", case.name, if all { "joining" } else { "fault" });
         black_box(step);
+    }
+}
+
+/// The LWR with a pose above the elbow, and with 12 rows above the wrist: so many rows, 7, 9 or
+/// 12, and no resolver. The levels in reverse are another order.
+fn with_rows<T: Real>(rows: usize) -> Controller<T> {
+    let gains = TaskGains::uniform(400.0, 40.0);
+    let point = |name| LWR_IV.point(name).expect("a point of the arm");
+    let elbow = if rows > 7 { Axes::XYZ } else { Axes::X };
+    let tasks = [
+        Task::position(LWR_IV.flange_point(), Axes::XYZ, gains),
+        Task::orientation(Link::L7.frame(), Axes::XYZ, gains),
+        Task::position(point("elbow"), elbow, gains),
+        Task::position(point("wrist"), Axes::XYZ, gains),
+    ];
+    let used = if rows > 9 { 4 } else { 3 };
+    let config = ControllerConfig {
+        tasks: TaskSet::new(&tasks[..used]).expect("valid tasks"),
+        null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
+        observer_gain: [50.0; 7],
+        cycle_s: 0.002,
+        dead_cycles: 0,
+    };
+    Controller::new(&LWR_IV, &config).expect("a valid configuration")
+}
+
+/// Cycles with so many rows, and the first of them in which all levels are on their way to the
+/// reverse order.
+fn rows<T: Real>(count: usize, inputs: &[Input]) {
+    let controller = with_rows::<T>(count);
+    let mut recorder = Recorder::new();
+    let slots: Vec<_> = (0..controller.level_count()).rev().collect();
+    let order = Change::Reorder(Order::new(&slots).expect("each once"));
+    let transition = controller.transition(&order, 0.5).expect("a change");
+    for input in inputs {
+        let q = input.q.map(T::from_f64).into();
+        let measurement = Measurement {
+            q,
+            dq: input.dq.map(T::from_f64).into(),
+            interval_s: T::from_f64(input.interval_s),
+        };
+        let reference = controller.rest_reference(&q);
+        let mut state = State::new();
+        let _ = controller.step(&mut state, &measurement, &reference);
+        for what in ["rows", "changing"] {
+            if what == "changing" {
+                controller
+                    .begin(&mut state, &transition)
+                    .expect("a change of these tasks");
+            }
+            let step = step(
+                black_box(&controller),
+                black_box(&mut state),
+                black_box(&mut recorder),
+                black_box(&measurement),
+                black_box(&reference),
+            );
+            let what = if step.status.fault.is_some() {
+                "fault"
+            } else {
+                what
+            };
+            println!("{count}-rows-{} {what}", std::any::type_name::<T>());
+            black_box(step);
+        }
     }
 }
 
@@ -169,5 +238,9 @@ fn main() {
         joins(&levels::<f64>(3), some);
         joins(&levels::<f32>(2), some);
         joins(&levels::<f32>(3), some);
+        for count in [7, 9, 12] {
+            rows::<f64>(count, some);
+            rows::<f32>(count, some);
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! result as data, what comes out.
 
 mod brake;
+mod change_error;
 pub mod config;
 mod construction;
 mod controller;
@@ -13,11 +14,17 @@ pub mod observer;
 pub mod record;
 pub mod stages;
 mod step;
+mod tasks;
+mod transition;
 pub(crate) mod usable;
 pub mod velocity;
 
+pub use change_error::ChangeError;
 pub use construction::MakeController;
+pub(crate) use construction::check_exact_rows;
 pub use controller::Controller;
 pub use data::{Data, Input, State};
 pub use inspection::Inspection;
 pub use step::Step;
+pub use tasks::ActiveTasks;
+pub use transition::{Change, Transition};

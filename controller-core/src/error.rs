@@ -6,8 +6,8 @@ use crate::arm::{ArmError, ArmParameters};
 use crate::fault::{JointLabel, Named, NamesJoints};
 use crate::joint::DOF;
 use crate::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, DISTORTION_MAX, GAIN_MAX, LEVEL_SPEED_RANGE, MAX_LEVELS,
-    MAX_ROWS, MOBILITY_RANGE, POINT_OFFSET_MAX_M,
+    CYCLE_RANGE_S, DEAD_CYCLES_MAX, DISTORTION_MAX, EXACT_ROWS, GAIN_MAX, LEVEL_SPEED_RANGE,
+    MAX_LEVELS, MAX_ROWS, MOBILITY_RANGE, POINT_OFFSET_MAX_M, STALE_RANGE_S,
 };
 use crate::real::Real;
 
@@ -92,6 +92,25 @@ pub enum ConfigError {
     Rows {
         /// Rows of all levels.
         rows: usize,
+    },
+    /// The tasks have, or have room for, more rows together than the exact law serves.
+    ExactRows {
+        /// Rows of all levels.
+        rows: usize,
+    },
+    /// Room for less than the tasks take, or for more than there may be.
+    Capacity {
+        /// What was given.
+        given: [usize; 2],
+        /// What the tasks take.
+        taken: [usize; 2],
+    },
+    /// The age from which on a reference is stale.
+    StaleAge {
+        /// Its level.
+        level: usize,
+        /// \[s\].
+        value: f64,
     },
     /// A task point whose offset is not finite or beyond 10 m.
     PointOffset {
@@ -237,6 +256,27 @@ impl NamesJoints for ConfigError {
                 write!(
                     f,
                     "the tasks have {rows} rows together; allowed 1 to {MAX_ROWS}"
+                )
+            }
+            Self::ExactRows { rows } => write!(
+                f,
+                "the tasks have, or have room for, {rows} rows together; allowed with the exact law \
+                 1 to {EXACT_ROWS}"
+            ),
+            Self::Capacity {
+                given: [levels, rows],
+                taken: [least_levels, least_rows],
+            } => write!(
+                f,
+                "room for {levels} levels and {rows} rows; allowed {least_levels} to {MAX_LEVELS} \
+                 levels and {least_rows} to {MAX_ROWS} rows"
+            ),
+            Self::StaleAge { level, value } => {
+                let [min, max] = STALE_RANGE_S;
+                write!(
+                    f,
+                    "level {level}: age {value} s from which on a reference is stale; allowed \
+                     {min} to {max}"
                 )
             }
             Self::PointOffset { level, value } => write!(

@@ -51,6 +51,10 @@ macro_rules! numbers {
                     "bounds of the joints kept by a cut: too many at once to share out";
                 Stuck = 106, "stuck", "STUCK",
                     "a level off its target in a singularity that no free motion leads out of";
+                Changing = 107, "changing", "CHANGING",
+                    "a level, or the null space, on its way to tasks or gains that were changed";
+                Stale = 108, "stale", "STALE",
+                    "a level whose reference is too old: it comes to rest";
             }
         }
     };
@@ -132,6 +136,13 @@ impl IndexSet {
     #[must_use]
     pub fn contains(self, index: usize) -> bool {
         index < 8 && (self.0 >> index) & 1 != 0
+    }
+
+    /// Takes `index` (from 0) out.
+    pub(crate) fn remove(&mut self, index: usize) {
+        if index < 8 {
+            self.0 &= !(1 << index);
+        }
     }
 
     /// Adds `index` (from 0) where `on`.
@@ -389,15 +400,15 @@ pub struct Status {
     pub rank: IndexSet,
     /// Joints of [`LimitKind::TorqueRate`].
     pub rate_limited: IndexSet,
-    /// Levels of [`LimitKind::Joining`]; bit 7, the eighth, is the posture.
+    /// Slots of levels of [`LimitKind::Joining`]; bit 7, the eighth, is the posture.
     pub joining: IndexSet,
-    /// Levels of [`LimitKind::Degraded`].
+    /// Slots of levels of [`LimitKind::Degraded`].
     pub degraded: IndexSet,
-    /// Levels of [`LimitKind::Released`].
+    /// Slots of levels of [`LimitKind::Released`].
     pub released: IndexSet,
-    /// Levels of [`LimitKind::Shaped`].
+    /// Slots of levels of [`LimitKind::Shaped`].
     pub shaped: IndexSet,
-    /// Levels of [`LimitKind::Scaled`]; bit 7, the eighth, is the null space.
+    /// Slots of levels of [`LimitKind::Scaled`]; bit 7, the eighth, is the null space.
     pub scaled: IndexSet,
     /// Joints of [`LimitKind::Bounded`] that may not go further down.
     pub at_least: IndexSet,
@@ -405,8 +416,12 @@ pub struct Status {
     pub at_greatest: IndexSet,
     /// Whether [`LimitKind::Unresolved`].
     pub unresolved: bool,
-    /// Levels of [`LimitKind::Stuck`].
+    /// Slots of levels of [`LimitKind::Stuck`].
     pub stuck: IndexSet,
+    /// Slots of [`LimitKind::Changing`]; bit 7, the eighth, is the null space.
+    pub changing: IndexSet,
+    /// Slots of [`LimitKind::Stale`].
+    pub stale: IndexSet,
     /// Exchanges that the projection onto the bounds took, at most
     /// [`PIVOTS`](crate::ranges::PIVOTS); 0 where no bound was in the way.
     pub pivots: u8,
@@ -429,6 +444,8 @@ impl Status {
         at_greatest: IndexSet::NONE,
         unresolved: false,
         stuck: IndexSet::NONE,
+        changing: IndexSet::NONE,
+        stale: IndexSet::NONE,
         pivots: 0,
     };
 
@@ -445,7 +462,9 @@ impl Status {
             | self.scaled.0
             | self.at_least.0
             | self.at_greatest.0
-            | self.stuck.0;
+            | self.stuck.0
+            | self.changing.0
+            | self.stale.0;
         Self {
             mode: if sets != 0 || self.unresolved {
                 Mode::Limited
@@ -480,6 +499,8 @@ impl Status {
             ),
             (LimitKind::Unresolved, IndexSet(u8::from(self.unresolved))),
             (LimitKind::Stuck, self.stuck),
+            (LimitKind::Changing, self.changing),
+            (LimitKind::Stale, self.stale),
         ];
         active
             .into_iter()

@@ -94,11 +94,11 @@ pub use nalgebra;
 pub use arm::{Link, LinkFrame, LinkPoint};
 pub use cycle::config::ControllerConfig;
 pub use cycle::measurement::Measurement;
-pub use cycle::{Controller, MakeController, State, Step};
+pub use cycle::{Change, ChangeError, Controller, MakeController, State, Step, Transition};
 pub use error::ConfigError;
 pub use fault::{Fault, Status};
 pub use law::null_space::NullSpace;
-pub use task::{Axes, Reference, Target, Task, TaskGains, TaskSet};
+pub use task::{Axes, Capacity, Order, Reference, Target, Task, TaskGains, TaskSet};
 
 /// The example of the README is a test.
 #[cfg(doctest)]

@@ -5,6 +5,15 @@
 use crate::joint::{DOF, JointMatrix, JointVector, in_turn, zeros};
 use crate::real::Real;
 
+/// A step of numbers towards others, of the way to which a share is `left`. Behind a call: it is in
+/// the flash once.
+#[inline(never)]
+pub(crate) fn approach<T: Real>(numbers: &mut [T], others: &[T], left: T) {
+    for (number, &other) in numbers.iter_mut().zip(others) {
+        *number = other + (*number - other) * left;
+    }
+}
+
 /// Repeats a block with the index as a constant: triangular loops inside it get
 /// fixed lengths, which the compiler then lays out without counters.
 macro_rules! for_each_joint {

@@ -3,8 +3,12 @@
 
 use crate::joint::DOF;
 
-/// Most task rows of all levels together that the law serves.
-pub const MAX_ROWS: usize = DOF;
+/// Most task rows of all levels together: more than an arm with seven joints can serve, so
+/// that a pose may stand above an elbow. What cannot be served is released from below.
+pub const MAX_ROWS: usize = 12;
+
+/// The same of the exact law, which releases nothing.
+pub const EXACT_ROWS: usize = DOF;
 
 /// Most priority levels.
 pub const MAX_LEVELS: usize = 7;
@@ -95,6 +99,25 @@ pub const JOIN_SPEED: [f64; 2] = [0.25, 0.5];
 
 /// Time in which a level that holds comes to rest \[s\].
 pub const HOLD_S: f64 = 0.2;
+
+/// Time in which a task comes, goes or gets other gains, unless a change says otherwise \[s\].
+pub const CHANGE_S: f64 = 0.5;
+
+/// Times that a change may take \[s\]: below, what it does to the torque is a step.
+pub const CHANGE_RANGE_S: [f64; 2] = [0.05, 60.0];
+
+/// Largest change of a nearness in a cycle while levels come and go: a limit of a command that comes
+/// in then cuts it over some cycles.
+pub const PACE: f64 = 0.006;
+
+/// Nearness between which that holds; at 1 commands get a limit.
+pub const PACED_NEARNESS: [f64; 2] = [0.5, 1.2];
+
+/// Least share of their rates with which levels come and go.
+pub const SLOWEST_PACE: f64 = 0.03;
+
+/// Ages after which a reference may be called stale \[s\].
+pub const STALE_RANGE_S: [f64; 2] = [1e-3, 3600.0];
 
 /// Largest h K of a resolver: the error of a level shrinks without changing its sign.
 pub const RESOLVER_GAIN_BOUND: f64 = 1.0;

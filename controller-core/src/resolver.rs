@@ -18,16 +18,16 @@
 
 use crate::arm::kinematics::Kinematics;
 use crate::arm::{ArmModel, ArmParameters};
-use crate::cycle::Input;
 use crate::cycle::config::check_cycle;
 use crate::cycle::measurement::{Measurement, within};
 use crate::cycle::usable::admit;
+use crate::cycle::{Input, check_exact_rows};
 use crate::error::ConfigError;
 use crate::fault::{Fault, IndexSet, Mode, Quantity, Status};
 use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::law::hierarchy::Hierarchy;
 use crate::linalg::Cholesky;
-use crate::ranges::{COMMAND_LEAD_MAX, GAIN_MAX, RESOLVER_GAIN_BOUND};
+use crate::ranges::{COMMAND_LEAD_MAX, EXACT_ROWS, GAIN_MAX, RESOLVER_GAIN_BOUND};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 use crate::task::{Followed, Levels, Reference, TaskSet};
@@ -138,6 +138,7 @@ impl<T: Real> Resolver<T> {
             cycle_s,
         } = config;
         check_cycle(cycle_s)?;
+        check_exact_rows(tasks)?;
         let bound = RESOLVER_GAIN_BOUND / cycle_s;
         if !(gain > 0.0 && gain <= bound) {
             return Err(ConfigError::ResolverGain { value: gain, bound });
@@ -186,10 +187,21 @@ impl<T: Real> Resolver<T> {
         let (rows, hierarchy) = (&mut state.rows, &mut state.hierarchy);
         state.kinematics.update(&self.arm, &at_rest);
         let (followed, kinematics) = (&mut state.followed, &state.kinematics);
-        followed.update(&self.levels, input.reference, kinematics, q, *interval_s);
+        let none = IndexSet::NONE;
+        followed.update(
+            &self.levels,
+            input.reference,
+            none,
+            kinematics,
+            q,
+            *interval_s,
+        );
         rows.update(&self.levels, &state.followed, &state.kinematics, &at_rest);
         let half = T::from_f64(0.5) * self.cycle_s;
-        let velocity = rows.commanded.map(|acceleration| acceleration * half);
+        let mut velocity = [T::ZERO; EXACT_ROWS];
+        for (velocity, &acceleration) in velocity.iter_mut().zip(&rows.commanded) {
+            *velocity = acceleration * half;
+        }
         hierarchy.update(rows, &Cholesky::identity());
         let dq = hierarchy.rotate_back(&hierarchy.solve(&velocity));
         for (joint, speed) in (1..).zip(&dq) {

@@ -9,13 +9,13 @@ use crate::arm::pose::Pose;
 #[repr(u8)]
 #[expect(missing_docs, reason = "the number says it")]
 pub enum Link {
-    L1 = 1,
-    L2 = 2,
-    L3 = 3,
-    L4 = 4,
-    L5 = 5,
-    L6 = 6,
-    L7 = 7,
+    L1,
+    L2,
+    L3,
+    L4,
+    L5,
+    L6,
+    L7,
 }
 
 impl Link {
@@ -49,7 +49,7 @@ impl Link {
     #[must_use]
     #[inline(always)]
     pub const fn number(self) -> usize {
-        self as usize
+        self as usize + 1
     }
 
     /// Its DH frame.

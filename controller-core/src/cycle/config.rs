@@ -66,43 +66,62 @@ impl ControllerConfig {
             }
         }
         for (level, task) in (1..).zip(self.tasks.tasks()) {
-            gain_bound::check(task, level, self.cycle_s, self.dead_cycles)?;
+            gain_bound::check(
+                &task.gains,
+                task.axes,
+                level,
+                self.cycle_s,
+                self.dead_cycles,
+            )?;
         }
         self.null_space.validate()?;
-        self.validate_damping(arm)
+        check_damping(arm, &self.null_space, self.cycle_s, self.dead_cycles)
     }
 
     /// What h lambda must stay below. An inertia-shaped damping is held to half
     /// a cycle's decay: it is the same everywhere and never needs more.
     #[must_use]
     pub fn damping_bound(&self) -> f64 {
-        let stable = sampling::bound(self.dead_cycles);
-        match self.null_space.damping {
-            NullDamping::Joint(_) => stable,
-            NullDamping::Inertia(_) => stable.min(INERTIA_DAMPING_BOUND),
-        }
+        damping_bound(&self.null_space.damping, self.dead_cycles)
     }
+}
 
-    fn validate_damping<T: Real>(&self, arm: &ArmModel<T>) -> Result<DampingRate, ConfigError> {
-        let fastest = match &self.null_space.damping {
-            NullDamping::Joint(damping) => sampling::fastest_mode(arm, &matrix(damping)),
-            NullDamping::Inertia(rate) => DampingRate {
-                rate: *rate,
-                joint: 1,
-                posture: [0.0; DOF],
-            },
-        };
-        let value = fastest.rate * self.cycle_s;
-        let bound = self.damping_bound();
-        if value < bound {
-            return Ok(fastest);
-        }
-        let DampingRate { joint, posture, .. } = fastest;
-        Err(ConfigError::Damping {
-            joint,
-            value,
-            bound,
-            posture,
-        })
+fn damping_bound(damping: &NullDamping, dead_cycles: u8) -> f64 {
+    let stable = sampling::bound(dead_cycles);
+    match damping {
+        NullDamping::Joint(_) => stable,
+        NullDamping::Inertia(_) => stable.min(INERTIA_DAMPING_BOUND),
     }
+}
+
+/// Whether a cycle carries the damping of a null space anywhere; returns its fastest mode.
+///
+/// # Errors
+/// Where it does not, and by how much.
+pub(super) fn check_damping<T: Real>(
+    arm: &ArmModel<T>,
+    null_space: &NullSpace,
+    cycle_s: f64,
+    dead_cycles: u8,
+) -> Result<DampingRate, ConfigError> {
+    let fastest = match &null_space.damping {
+        NullDamping::Joint(damping) => sampling::fastest_mode(arm, &matrix(damping)),
+        NullDamping::Inertia(rate) => DampingRate {
+            rate: *rate,
+            joint: 1,
+            posture: [0.0; DOF],
+        },
+    };
+    let value = fastest.rate * cycle_s;
+    let bound = damping_bound(&null_space.damping, dead_cycles);
+    if value < bound {
+        return Ok(fastest);
+    }
+    let DampingRate { joint, posture, .. } = fastest;
+    Err(ConfigError::Damping {
+        joint,
+        value,
+        bound,
+        posture,
+    })
 }

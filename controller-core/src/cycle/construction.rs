@@ -11,12 +11,26 @@ use crate::law::limits::bounds::JointBounds;
 use crate::law::limits::joint_limits;
 use crate::law::null_space::{Compliance, Posture};
 use crate::law::sampling::DampingRate;
+use crate::ranges::EXACT_ROWS;
 use crate::real::Real;
-use crate::task::Levels;
+use crate::task::{Levels, TaskSet};
 
 /// What makes a controller: [`Controller::new`] or [`Controller::exact`].
 pub type MakeController<T> =
     fn(&ArmParameters, &ControllerConfig) -> Result<Controller<T>, ConfigError>;
+
+/// Whether the exact law has room for what tasks take, and for what they may come to take.
+///
+/// # Errors
+/// [`ConfigError::ExactRows`].
+pub(crate) fn check_exact_rows(tasks: &TaskSet) -> Result<(), ConfigError> {
+    let rows = tasks.capacity().rows;
+    if rows <= EXACT_ROWS {
+        Ok(())
+    } else {
+        Err(ConfigError::ExactRows { rows })
+    }
+}
 
 impl<T: Real> Controller<T> {
     /// The law within limits ([`crate::law::limits`]). Validates arm and configuration and
@@ -40,6 +54,7 @@ impl<T: Real> Controller<T> {
     /// # Errors
     /// [`ConfigError`] names the first thing that cannot be.
     pub fn exact(arm: &ArmParameters, config: &ControllerConfig) -> Result<Self, ConfigError> {
+        check_exact_rows(&config.tasks)?;
         Self::made(arm, config, |model, fastest_mode| {
             Self::exactly(model, config, fastest_mode)
         })
@@ -98,6 +113,7 @@ impl<T: Real> Controller<T> {
             arm: *arm,
             law,
             levels: Levels::new(&config.tasks, arm, law.limits),
+            capacity: config.tasks.capacity(),
             bounds: *bounds,
             compliance: Compliance::new(&config.null_space),
             observer_gain: JointVector::from(config.observer_gain.map(T::from_f64)),

@@ -9,7 +9,7 @@ use crate::law::limits::bounds::JointBounds;
 use crate::law::null_space::Compliance;
 use crate::law::sampling::DampingRate;
 use crate::real::Real;
-use crate::task::Levels;
+use crate::task::{Capacity, Levels};
 
 /// A stage: reads results above its own, writes its own.
 pub type Run<T> = fn(&Controller<T>, &Input<'_, T>, &mut Data<T>);
@@ -29,9 +29,12 @@ pub(super) struct Law<T: Real> {
 pub struct Controller<T: Real> {
     pub(super) arm: ArmModel<T>,
     pub(super) law: Law<T>,
+    /// Until a change is begun.
     pub(super) levels: Levels<T>,
+    pub(super) capacity: Capacity,
     /// Of the law within limits.
     pub(super) bounds: JointBounds<T>,
+    /// Until a change is begun.
     pub(super) compliance: Compliance<T>,
     pub(super) observer_gain: JointVector<T>,
     pub(super) cycle_s: T,
@@ -58,10 +61,11 @@ impl<T: Real> Controller<T> {
         self.law.limits
     }
 
-    /// Number of levels: so many targets a [`Reference`](crate::Reference) needs.
+    /// Number of slots: so many targets a [`Reference`](crate::Reference) needs. Without room for
+    /// more the number of levels.
     #[must_use]
     pub fn level_count(&self) -> usize {
-        self.levels.as_slice().len()
+        self.levels.slots()
     }
 
     /// Whether a cycle would believe that the arm is at `q` \[rad\]: within the range of every

@@ -5,9 +5,10 @@ use super::brake::Brake;
 use super::delay::Delay;
 use super::measurement::Measurement;
 use super::observer::Observer;
+use super::tasks::ActiveTasks;
 use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
-use crate::fault::{Fault, Status};
+use crate::fault::{Fault, IndexSet, Status};
 use crate::joint::{JointState, JointVector, zeros};
 use crate::law::allocation::Allocation;
 use crate::law::control::{Control, TorqueDemand};
@@ -20,6 +21,7 @@ use crate::law::limits::way_out::WayOut;
 use crate::law::limits::wish::Wish;
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::PostureIntegral;
+use crate::ranges::MAX_LEVELS;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 use crate::task::{Followed, Reference};
@@ -35,7 +37,7 @@ pub struct Input<'a, T: Real> {
 
 /// The results of a cycle, one field per stage of
 /// [`Controller::STAGES`](super::Controller::STAGES). A stage reads the fields of those before
-/// it and writes its own. In the order of the stages but for the two largest, which stand last.
+/// it and writes its own. In the order of the stages but for the three largest, which stand last.
 // In this order in memory: most of what a stage reads lies within reach of one base register.
 #[derive(Clone, Debug)]
 #[repr(C)]
@@ -81,6 +83,8 @@ pub struct Data<T: Real> {
     pub(super) posture_integral: PostureIntegral<T>,
     /// Frames, axes and their rates.
     pub kinematics: Kinematics<T>,
+    /// The tasks and gains in force.
+    pub tasks: ActiveTasks<T>,
     /// What levels and posture follow: the reference without its jumps.
     pub followed: Followed<T>,
 }
@@ -115,6 +119,7 @@ impl<T: Real> Data<T> {
             allocation: Allocation::new(),
             delay: Delay::new(),
             posture_integral: PostureIntegral::new(),
+            tasks: ActiveTasks::new(),
             followed: Followed::new(),
         }
     }
@@ -145,14 +150,23 @@ impl<T: Real> Data<T> {
         status.pivots = projection.pivots;
     }
 
-    /// Forgets what is remembered: observer, delay, integrated posture,
-    /// what was followed.
+    /// Forgets what is remembered: observer, delay, integrated posture, what was followed. Tasks
+    /// and gains that were changed are what was wanted.
     pub(super) fn forget(&mut self) {
         self.observer = Observer::new();
         self.delay = Delay::new();
         self.posture_integral = PostureIntegral::new();
         self.projection.forget();
         self.followed = Followed::new();
+        self.tasks.arrive();
+    }
+
+    /// Forgets what is remembered of the levels of `slots`: they came or went.
+    pub(super) fn forget_levels(&mut self, slots: IndexSet) {
+        for slot in (0..MAX_LEVELS).filter(|&slot| slots.contains(slot)) {
+            self.followed.forget(slot);
+            self.projection.forget_level(slot);
+        }
     }
 }
 
@@ -241,7 +255,7 @@ impl<T: Real> State<T> {
     }
 
     /// Clears a latched fault. Observer, integrated posture and what was followed start
-    /// anew; the torque that holds the arm stays until the next cycle.
+    /// anew, changes of tasks and gains that were begun are at their end; the torque that holds the arm stays until the next cycle.
     pub fn reset(&mut self) {
         self.data.forget();
         self.fault = None;

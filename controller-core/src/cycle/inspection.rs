@@ -1,6 +1,7 @@
 //! One cycle laid open, for whoever looks and does not move.
 
 use super::config::ControllerConfig;
+use super::construction::check_exact_rows;
 use super::controller::Controller;
 use super::data::{Data, Input};
 use crate::arm::{ArmModel, ArmParameters};
@@ -31,6 +32,7 @@ impl<T: Real> Inspection<T> {
         observer_gain: [f64; DOF],
     ) -> Result<Self, ConfigError> {
         let config = config(tasks, null_space, observer_gain)?;
+        check_exact_rows(&config.tasks)?;
         let controller = Controller::exactly(&ArmModel::new(arm)?, &config, UNKNOWN);
         Ok(Self { controller })
     }

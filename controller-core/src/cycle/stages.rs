@@ -31,6 +31,8 @@ pub enum StageName {
     HoldingTorque,
     /// The residual in [`Data::observer`].
     Observer,
+    /// [`Data::tasks`].
+    Tasks,
     /// [`Data::followed`].
     Followed,
     /// [`Data::rows`].
@@ -69,6 +71,7 @@ impl StageName {
             Self::Dynamics => "dynamics",
             Self::HoldingTorque => "holding torque",
             Self::Observer => "observer",
+            Self::Tasks => "tasks",
             Self::Followed => "followed",
             Self::TaskRows => "task rows",
             Self::Hierarchy => "hierarchy",
@@ -90,19 +93,20 @@ impl StageName {
 pub type Stage<T> = (StageName, Run<T>);
 
 /// Number of stages of the law within limits.
-pub const STAGE_COUNT: usize = 16;
+pub const STAGE_COUNT: usize = 17;
 
 /// Number of stages of the exact law.
-pub const EXACT_STAGE_COUNT: usize = 14;
+pub const EXACT_STAGE_COUNT: usize = 15;
 
 impl<T: Real> Controller<T> {
     /// Before the law: what is, and what is followed.
-    pub(super) const OBSERVED: [Stage<T>; 7] = [
+    pub(super) const OBSERVED: [Stage<T>; 8] = [
         (StageName::JointState, joint_state),
         (StageName::Kinematics, kinematics),
         (StageName::Dynamics, dynamics),
         (StageName::HoldingTorque, holding_torque),
         (StageName::Observer, observer),
+        (StageName::Tasks, tasks),
         (StageName::Followed, followed),
         (StageName::TaskRows, task_rows),
     ];
@@ -134,19 +138,19 @@ impl<T: Real> Controller<T> {
 
     /// The cycle with the law within limits.
     pub const STAGES: [Stage<T>; STAGE_COUNT] = {
-        let [a, b, c, d, e, f, g] = Self::OBSERVED;
-        let [h, i, j, k, l, m, n] = Self::WITHIN_LIMITS;
-        let [o, p] = Self::ALLOWED;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
+        let [a, b, c, d, e, f, g, h] = Self::OBSERVED;
+        let [i, j, k, l, m, n, o] = Self::WITHIN_LIMITS;
+        let [p, q] = Self::ALLOWED;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q]
     };
 
     /// The cycle with the exact law.
     pub const EXACT_STAGES: [Stage<T>; EXACT_STAGE_COUNT] = {
-        let [a, b, c, d, e, f, g] = Self::OBSERVED;
-        let [h, i, j, k] = Self::EXACT;
-        let [o, p] = Self::ALLOWED;
+        let [a, b, c, d, e, f, g, h] = Self::OBSERVED;
+        let [i, j, k, l] = Self::EXACT;
+        let [p, q] = Self::ALLOWED;
         let demand: Stage<T> = (StageName::TorqueDemand, torque_demand);
-        [a, b, c, d, e, f, g, h, i, j, k, demand, o, p]
+        [a, b, c, d, e, f, g, h, i, j, k, l, demand, p, q]
     };
 }
 
@@ -262,11 +266,22 @@ fn observer<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
     );
 }
 
+fn tasks<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
+    let ages_s = input.reference.ages_s();
+    data.tasks.watch(controller, ages_s, &data.followed);
+    if data.tasks.changing().any() {
+        let interval_s = input.measurement.interval_s;
+        let met = data.tasks.advance(interval_s, &data.spectrum);
+        data.forget_levels(met);
+    }
+}
+
 #[inline(never)]
 fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
     data.followed.update(
-        &controller.levels,
+        data.tasks.levels(controller),
         input.reference,
+        data.tasks.stale(),
         &data.kinematics,
         &data.joints.q,
         input.measurement.interval_s,
@@ -275,7 +290,7 @@ fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
 
 fn task_rows<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.rows.update(
-        &controller.levels,
+        data.tasks.levels(controller),
         &data.followed,
         &data.kinematics,
         &data.joints,
@@ -326,7 +341,7 @@ fn constant_posture<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
 #[inline(never)]
 fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.control.update(
-        &controller.compliance,
+        data.tasks.compliance(controller),
         &data.dynamics,
         &data.rows,
         &data.hierarchy,
@@ -336,14 +351,15 @@ fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
 }
 
 fn spectrum<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    let levels = data.tasks.levels(controller);
     data.spectrum
-        .update(&controller.levels, &data.rows, &data.dynamics.cholesky);
+        .update(levels, &data.rows, &data.dynamics.cholesky);
 }
 
 fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.whitened_motion.update(
         &mut data.motion,
-        &controller.levels,
+        data.tasks.levels(controller),
         &data.dynamics.cholesky,
         &data.spectrum,
         &data.joints.dq,
@@ -352,14 +368,14 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let null_force = controller.compliance.force(
+    let null_force = data.tasks.compliance(controller).force(
         &data.dynamics,
         &data.rows,
         &data.motion,
         &(data.posture - data.joints.q),
     );
     data.way_out.update(&Straight {
-        levels: &controller.levels,
+        levels: data.tasks.levels(controller),
         bounds: &controller.bounds,
         kinematics: &data.kinematics,
         dynamics: &data.dynamics,
@@ -372,7 +388,7 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         posture: &data.posture,
     });
     data.wish.update(&Ask {
-        levels: &controller.levels,
+        levels: data.tasks.levels(controller),
         bounds: &controller.bounds,
         torque_limit: controller.arm.torque_limit(),
         dynamics: &data.dynamics,
@@ -395,7 +411,7 @@ fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut 
         acceleration: &data.wish.acceleration,
         torque: &data.wish.torque,
         bounds: &data.bounds,
-        levels: &controller.levels,
+        levels: data.tasks.levels(controller),
         dynamics: &data.dynamics,
         rows: &data.rows,
         spectrum: &data.spectrum,

@@ -12,7 +12,7 @@ use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
 use crate::ranges::{BLIND_FADE_S, INTERVAL_FACTORS, SPEED_FACTOR};
 use crate::real::Real;
-use crate::task::Reference;
+use crate::task::{Levels, Reference};
 
 /// The result of one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,25 +32,30 @@ pub struct Step<T: Real> {
 }
 
 impl<T: Real> Controller<T> {
-    /// The reference that keeps the arm in the posture `q` \[rad\]: every level
-    /// at rest where it is there, q_d = q. What motions start from.
+    /// The reference that keeps the arm in the posture `q` \[rad\]: every level of the controller's
+    /// own at rest where it is there, absent or not, q_d = q. What motions start from.
     #[must_use]
     pub fn rest_reference(&self, q: &JointVector<T>) -> Reference<T> {
         let dq = zeros();
         self.moving_reference(&JointState { q: *q, dq })
     }
 
+    /// The same of the tasks of a state, changed or not.
+    #[must_use]
+    pub fn rest_reference_of(&self, state: &State<T>, q: &JointVector<T>) -> Reference<T> {
+        let dq = zeros();
+        reference_of(
+            self,
+            state.data.tasks.levels(self),
+            &JointState { q: *q, dq },
+        )
+    }
+
     /// The reference that moves as the arm does at this instant: position and
     /// velocity of every level, no acceleration, q_d = q.
     #[must_use]
     pub fn moving_reference(&self, joints: &JointState<T>) -> Reference<T> {
-        let kinematics = kinematics_at(self, joints);
-        let mut reference = Reference::hold(self.level_count(), joints.q);
-        let levels = self.levels.as_slice().iter();
-        for (target, level) in reference.targets_mut().iter_mut().zip(levels) {
-            *target = level.tracked.target(&kinematics);
-        }
-        reference
+        reference_of(self, &self.levels, joints)
     }
 
     /// What levels and posture followed in the last cycle of `state`: its reference, joined
@@ -103,7 +108,8 @@ impl<T: Real> Controller<T> {
             measurement,
             reference,
         };
-        let admitted = admit(state.fault, &self.arm, &self.levels, self.cycle_s, &input);
+        let levels = state.data.tasks.levels(self);
+        let admitted = admit(state.fault, &self.arm, levels, self.cycle_s, &input);
         if let Err(fault) = admitted {
             return self.brake(state, &input, fault);
         }
@@ -202,6 +208,23 @@ impl<T: Real> Controller<T> {
     }
 }
 
+/// How the points and frames of levels move, in force or not.
+#[inline(never)]
+fn reference_of<T: Real>(
+    controller: &Controller<T>,
+    levels: &Levels<T>,
+    joints: &JointState<T>,
+) -> Reference<T> {
+    let kinematics = kinematics_at(controller, joints);
+    let mut reference = Reference::hold(levels.slots(), joints.q);
+    for level in levels.all().iter().filter(|level| level.size > 0) {
+        if let Some(target) = reference.targets_mut().get_mut(level.slot) {
+            *target = level.tracked.target(&kinematics);
+        }
+    }
+    reference
+}
+
 impl<T: Real> Controller<T> {
     /// A cycle with a fault.
     #[inline(never)]
@@ -296,6 +319,8 @@ impl<T: Real> State<T> {
             saturated: allocation.saturated,
             rate_limited: allocation.rate_limited,
             joining: data.followed.joining(),
+            changing: data.tasks.changing(),
+            stale: data.tasks.stale(),
             ..Status::CLEAR
         };
         if limits {

@@ -30,7 +30,7 @@ pub(crate) fn admit<T: Real>(
     }
 }
 
-/// Checks that a reference has one target per level, of the kind of its task, and that
+/// Checks that a reference has one target per slot, of the kind of its task, and that
 /// an arm can be meant by its numbers: [`crate::ranges`] has their bounds.
 ///
 /// # Errors
@@ -41,7 +41,7 @@ fn usable<T: Real>(
     arm: &ArmModel<T>,
 ) -> Result<(), Fault> {
     let targets = reference.targets();
-    let count = levels.as_slice().len();
+    let count = levels.slots();
     if targets.len() != count {
         return Err(refusal(
             Quantity::TargetCount,
@@ -50,7 +50,12 @@ fn usable<T: Real>(
             [count as f64; 2],
         ));
     }
-    for (index, (target, level)) in (1..).zip(targets.iter().zip(levels.as_slice())) {
+    // Of a slot without a level in force a target says nothing.
+    for level in levels.in_order() {
+        let Some(target) = targets.get(level.slot) else {
+            continue;
+        };
+        let index = level.slot as u8 + 1;
         match (target, &level.tracked) {
             (Target::Hold, _) => {}
             (Target::Position { x, dx, ddx }, LevelPoint::Position(..)) => {

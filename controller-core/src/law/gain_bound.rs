@@ -15,22 +15,23 @@ use crate::error::ConfigError;
 use crate::joint::in_turn;
 use crate::ranges::DEAD_CYCLES_MAX;
 use crate::real::Real;
-use crate::task::Task;
+use crate::task::{Axes, TaskGains};
 
-/// Checks the gains of `task`, level `level` (from 1), in a loop with the cycle `cycle_s`
+/// Checks the gains of a task on its axes, level `level` (from 1), in a loop with the cycle `cycle_s`
 /// \[s\].
 ///
 /// # Errors
 /// The pair of K_p and K_d that the cycle is too long for. Diagonal gains are looked at axis
 /// by axis; of others bounds of the eigenvalues are paired, which is never too lenient.
 pub(crate) fn check(
-    task: &Task,
+    gains: &TaskGains,
+    axes: Axes,
     level: usize,
     cycle_s: f64,
     dead_cycles: u8,
 ) -> Result<(), ConfigError> {
-    let gains = [&task.gains.stiffness, &task.gains.damping];
-    let used = task.axes.flags();
+    let gains = [&gains.stiffness, &gains.damping];
+    let used = axes.flags();
     let used = |i: usize| used.get(i).copied().unwrap_or(false);
     let mut coupled = false;
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {

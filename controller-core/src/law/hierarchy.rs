@@ -24,7 +24,7 @@
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::{Cholesky, for_each_joint};
-use crate::ranges::MAX_ROWS;
+use crate::ranges::EXACT_ROWS;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 
@@ -36,16 +36,16 @@ pub const RANK_THRESHOLD: f64 = 1e-8;
 #[derive(Clone, Copy, Debug)]
 pub struct Hierarchy<T: Real> {
     pub(super) count: usize,
-    pub(super) level_start: [usize; MAX_ROWS],
+    pub(super) level_start: [usize; EXACT_ROWS],
     /// Row k holds R_k0 .. R_k(k-1), and from entry k on the reflector v_k:
     /// Q = H_m .. H_1 with H_k = 1 - scale_k v_k v_k^T. Behind the last row the arrays
     /// have no meaning.
-    pub(super) factors: [JointVector<T>; MAX_ROWS],
-    scale: [T; MAX_ROWS],
+    pub(super) factors: [JointVector<T>; EXACT_ROWS],
+    scale: [T; EXACT_ROWS],
     /// R_kk.
-    pub(super) pivot: [T; MAX_ROWS],
+    pub(super) pivot: [T; EXACT_ROWS],
     /// 1 / R_kk, 0 where the row is rank deficient.
-    inverse_pivot: [T; MAX_ROWS],
+    inverse_pivot: [T; EXACT_ROWS],
     deficient: IndexSet,
 }
 
@@ -55,11 +55,11 @@ impl<T: Real> Hierarchy<T> {
     pub const fn new() -> Self {
         Self {
             count: 0,
-            level_start: [0; MAX_ROWS],
-            factors: [zeros(); MAX_ROWS],
-            scale: [T::ZERO; MAX_ROWS],
-            pivot: [T::ZERO; MAX_ROWS],
-            inverse_pivot: [T::ZERO; MAX_ROWS],
+            level_start: [0; EXACT_ROWS],
+            factors: [zeros(); EXACT_ROWS],
+            scale: [T::ZERO; EXACT_ROWS],
+            pivot: [T::ZERO; EXACT_ROWS],
+            inverse_pivot: [T::ZERO; EXACT_ROWS],
             deficient: IndexSet::NONE,
         }
     }
@@ -68,9 +68,11 @@ impl<T: Real> Hierarchy<T> {
     /// gives the unweighted (Moore-Penrose) hierarchy.
     #[inline]
     pub fn update(&mut self, rows: &TaskRows<T>, cholesky: &Cholesky<T>) {
-        let count = rows.count();
+        let count = rows.count().min(EXACT_ROWS);
         self.count = count;
-        self.level_start = rows.level_start;
+        for (start, of_row) in self.level_start.iter_mut().zip(&rows.level_start) {
+            *start = *of_row;
+        }
         self.deficient = IndexSet::NONE;
         for (factor, row) in self.factors.iter_mut().zip(&rows.jacobian).take(count) {
             *factor = cholesky.solve_lower(row);
@@ -143,9 +145,9 @@ impl<T: Real> Hierarchy<T> {
     /// |R_kk| per row \[1/sqrt(kg)\]: how far the row is from being
     /// unresolvable given the rows above it. 0 behind the last row.
     #[must_use]
-    pub fn conditioning(&self) -> [T; MAX_ROWS] {
-        let mut diagonal = [T::ZERO; MAX_ROWS];
-        for k in 0..MAX_ROWS {
+    pub fn conditioning(&self) -> [T; EXACT_ROWS] {
+        let mut diagonal = [T::ZERO; EXACT_ROWS];
+        for k in 0..EXACT_ROWS {
             if k < self.count {
                 diagonal[k] = self.pivot[k].magnitude();
             }
@@ -210,7 +212,7 @@ impl<T: Real> Hierarchy<T> {
     /// off before the row acts. 0 in rank-deficient rows and behind row m.
     #[must_use]
     #[inline]
-    pub fn solve(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
+    pub fn solve(&self, b: &[T; EXACT_ROWS]) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
         for_each_joint!(k, {
             if k < self.count {
@@ -228,9 +230,9 @@ impl<T: Real> Hierarchy<T> {
     /// between levels, as (26), (34) and (51) are printed.
     #[must_use]
     #[inline]
-    pub fn solve_uncoupled(&self, b: &[T; MAX_ROWS]) -> JointVector<T> {
+    pub fn solve_uncoupled(&self, b: &[T; EXACT_ROWS]) -> JointVector<T> {
         let mut y: JointVector<T> = zeros();
-        for k in 0..MAX_ROWS {
+        for k in 0..EXACT_ROWS {
             if k < self.count {
                 let mut known = T::ZERO;
                 for j in 0..k {
@@ -247,9 +249,9 @@ impl<T: Real> Hierarchy<T> {
     /// R^-T s for the task entries of `s`. 0 in rank-deficient rows.
     #[must_use]
     #[inline]
-    pub fn solve_transposed(&self, s: &JointVector<T>) -> [T; MAX_ROWS] {
+    pub fn solve_transposed(&self, s: &JointVector<T>) -> [T; EXACT_ROWS] {
         let mut rest = *s;
-        let mut x = [T::ZERO; MAX_ROWS];
+        let mut x = [T::ZERO; EXACT_ROWS];
         for_each_joint!(rev k, {
             if k < self.count {
                 let value = rest[k] * self.inverse_pivot[k];

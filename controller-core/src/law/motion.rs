@@ -3,7 +3,7 @@
 use super::hierarchy::Hierarchy;
 use crate::arm::dynamics::Dynamics;
 use crate::joint::{JointState, JointVector, zeros};
-use crate::ranges::MAX_ROWS;
+use crate::ranges::{EXACT_ROWS, MAX_ROWS};
 use crate::real::Real;
 use crate::task::rows::TaskRows;
 
@@ -41,7 +41,10 @@ impl<T: Real> MotionSplit<T> {
         let whitened = hierarchy.task_part(&hierarchy.rotate(&cholesky.upper_times(&joints.dq)));
         self.task_velocity = cholesky.solve_upper(&hierarchy.rotate_back(&whitened));
         self.null_velocity = joints.dq - self.task_velocity;
-        self.task_momentum = hierarchy.solve_transposed(&whitened);
+        let momenta = hierarchy.solve_transposed(&whitened);
+        for (momentum, of_row) in self.task_momentum.iter_mut().zip(momenta) {
+            *momentum = of_row;
+        }
     }
 
     /// sum of Jbar_i^# dx_i \[rad/s\]: the task velocity as (51) prints it, without the
@@ -53,7 +56,7 @@ impl<T: Real> MotionSplit<T> {
         hierarchy: &Hierarchy<T>,
         joints: &JointState<T>,
     ) -> JointVector<T> {
-        let mut velocity = [T::ZERO; MAX_ROWS];
+        let mut velocity = [T::ZERO; EXACT_ROWS];
         for (velocity, row) in velocity.iter_mut().zip(&rows.jacobian).take(rows.count()) {
             *velocity = row.dot(&joints.dq);
         }

@@ -5,6 +5,7 @@ use crate::arm::dynamics::Dynamics;
 use crate::error::{ConfigError, Gain};
 use crate::gain;
 use crate::joint::{DOF, JointMatrix, JointVector, in_turn, zeros};
+use crate::linalg::approach;
 use crate::ranges::GAIN_MAX;
 use crate::real::Real;
 use crate::task::rows::TaskRows;
@@ -103,6 +104,48 @@ pub enum Damping<T: Real> {
 }
 
 impl<T: Real> Compliance<T> {
+    /// Of no null space.
+    pub(crate) const NONE: Self = Self {
+        stiffness: zeros(),
+        damping: Damping::Inertia(T::ZERO),
+        posture: Posture::Constant,
+        decoupled: [false; 2],
+    };
+
+    /// Whether the damping of both is of the same kind.
+    pub(crate) fn has_the_kind_of(&self, other: &Self) -> bool {
+        core::mem::discriminant(&self.damping) == core::mem::discriminant(&other.damping)
+    }
+
+    /// On the way to another one joints are coupled as soon as either couples them.
+    pub(crate) fn make_room_for(&mut self, other: &Self) {
+        for (own, other) in self.decoupled.iter_mut().zip(other.decoupled) {
+            *own &= other;
+        }
+    }
+
+    /// A step towards another one of the same kind of damping: of the way there a share is `left`.
+    pub(crate) fn approach(&mut self, other: &Self, left: T) {
+        if left == T::ZERO {
+            *self = *other;
+            return;
+        }
+        approach(
+            self.stiffness.as_mut_slice(),
+            other.stiffness.as_slice(),
+            left,
+        );
+        match (&mut self.damping, &other.damping) {
+            (Damping::Joint(own), Damping::Joint(other)) => {
+                approach(own.as_mut_slice(), other.as_slice(), left);
+            }
+            (Damping::Inertia(own), Damping::Inertia(other)) => {
+                *own = *other + (*own - *other) * left;
+            }
+            _ => {}
+        }
+    }
+
     pub(crate) fn new(null_space: &NullSpace) -> Self {
         Self {
             stiffness: matrix(&null_space.stiffness),

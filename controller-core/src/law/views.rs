@@ -7,11 +7,11 @@ use heapless::Vec;
 use super::hierarchy::Hierarchy;
 use crate::joint::{DOF, JointMatrix, JointVector, zeros};
 use crate::linalg::Cholesky;
-use crate::ranges::MAX_ROWS;
+use crate::ranges::EXACT_ROWS;
 use crate::real::Real;
 
 /// One joint-space row (or column) per task row of a level.
-pub type LevelRows<T> = Vec<JointVector<T>, MAX_ROWS>;
+pub type LevelRows<T> = Vec<JointVector<T>, EXACT_ROWS>;
 
 impl<T: Real> Hierarchy<T> {
     /// R_kj, zero for j > k.
@@ -65,7 +65,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn jbar_pinv(&self, level: usize, cholesky: &Cholesky<T>) -> LevelRows<T> {
         let range = self.level_range(level);
         let column = |k: usize| {
-            let mut unit = [T::ZERO; MAX_ROWS];
+            let mut unit = [T::ZERO; EXACT_ROWS];
             unit[k] = T::ONE;
             // R^-1 of a unit vector, cut to the level: the column of R_ii^-1.
             let solved = self.solve(&unit);
@@ -83,7 +83,7 @@ impl<T: Real> Hierarchy<T> {
     pub fn task_inertia(&self, level: usize) -> JointMatrix<T> {
         let range = self.level_range(level);
         let inverse = |k: usize| {
-            let mut unit = [T::ZERO; MAX_ROWS];
+            let mut unit = [T::ZERO; EXACT_ROWS];
             unit[k] = T::ONE;
             let mut column = self.solve(&unit);
             for (j, value) in column.iter_mut().enumerate() {

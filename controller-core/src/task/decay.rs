@@ -3,6 +3,11 @@
 use crate::joint::{Vector3, zeros};
 use crate::real::Real;
 
+/// From 0 to 1 as s does, without a step of its rate.
+pub(crate) fn smoothstep<T: Real>(s: T) -> T {
+    s * s * (T::from_f64(3.0) - s - s)
+}
+
 /// Time that passes while a difference dies out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock<T: Real> {
@@ -30,6 +35,13 @@ impl<T: Real> Clock<T> {
     #[inline(always)]
     pub fn runs(&self) -> bool {
         self.duration_s > T::ZERO
+    }
+
+    /// Begins anew where some is left, for `duration_s` > 0.
+    pub fn shorten(&mut self, duration_s: T) {
+        if self.runs() {
+            *self = Self::new(duration_s);
+        }
     }
 
     /// Nothing is left from now on.

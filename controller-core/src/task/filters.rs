@@ -1,10 +1,55 @@
 //! [`LevelLimits`] as the law reads them: what takes the place of 1/z, and how far commands go.
 
+use super::Axes;
 use super::level_limits::LevelLimits;
-use super::set::{Task, Tracked};
-use crate::joint::{Matrix3, Vector3, in_turn};
-use crate::ranges::ORIENTATION_LENGTH;
+use crate::joint::{Matrix3, Vector3, in_turn, zeros};
+use crate::linalg::approach;
 use crate::real::Real;
+
+/// [`LevelLimits`] in the precision of the controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Thresholds<T: Real> {
+    drive_mobility: T,
+    release_mobility: T,
+    error_speed: T,
+    lost_speed: T,
+    stiff_mobility: T,
+}
+
+impl<T: Real> Thresholds<T> {
+    /// Of no task.
+    pub const NONE: Self = Self {
+        drive_mobility: T::ZERO,
+        release_mobility: T::ZERO,
+        error_speed: T::ZERO,
+        lost_speed: T::ZERO,
+        stiff_mobility: T::ZERO,
+    };
+
+    /// Without `shortens` every error is followed.
+    pub fn new(limits: &LevelLimits, shortens: bool) -> Self {
+        Self {
+            drive_mobility: T::from_f64(limits.drive_mobility),
+            release_mobility: T::from_f64(limits.release_mobility),
+            // Farther than any error that is believed.
+            error_speed: T::from_f64(if shortens { limits.error_speed } else { 1e15 }),
+            lost_speed: T::from_f64(limits.lost_speed),
+            stiff_mobility: T::from_f64(limits.stiff_mobility),
+        }
+    }
+
+    /// These, or by a share of the way the others.
+    pub fn towards(&self, others: &Self, share: T) -> Self {
+        let between = |from: T, to: T| from + (to - from) * share;
+        Self {
+            drive_mobility: between(self.drive_mobility, others.drive_mobility),
+            release_mobility: between(self.release_mobility, others.release_mobility),
+            error_speed: between(self.error_speed, others.error_speed),
+            lost_speed: between(self.lost_speed, others.lost_speed),
+            stiff_mobility: between(self.stiff_mobility, others.stiff_mobility),
+        }
+    }
+}
 
 /// 1/z down to a threshold, below it a line that ends at twice 1/threshold: what grew without
 /// bound meets an end, and does so without a kink.
@@ -19,11 +64,17 @@ struct Filter<T: Real> {
 }
 
 impl<T: Real> Filter<T> {
-    fn new(threshold: f64) -> Self {
+    const NONE: Self = Self {
+        threshold: T::ZERO,
+        end: T::ZERO,
+        slope: T::ZERO,
+    };
+
+    fn new(threshold: T) -> Self {
         Self {
-            threshold: T::from_f64(threshold),
-            end: T::from_f64(2.0 / threshold),
-            slope: T::from_f64(1.0 / (threshold * threshold)),
+            threshold,
+            end: T::from_f64(2.0) / threshold,
+            slope: T::ONE / (threshold * threshold),
         }
     }
 
@@ -56,38 +107,41 @@ pub(crate) struct LevelFilters<T: Real> {
 }
 
 impl<T: Real> LevelFilters<T> {
-    /// Of a task at the place `level`, counted from 0; without `shortens` every error is followed.
-    pub fn new(task: &Task, level: usize, shortens: bool) -> Self {
-        let limits = task.limits.unwrap_or(match level {
-            0 => LevelLimits::FIRST,
-            _ => LevelLimits::BELOW,
-        });
-        let mut rate = 0.0;
-        for axis in 0..3 {
-            if task.axes.contains(axis) {
-                rate += task.gains.damping[axis][axis];
-            }
+    /// Of no task.
+    pub const NONE: Self = Self {
+        drive: Filter::NONE,
+        keep: Filter::NONE,
+        inverse_release: T::ZERO,
+        lost_command: T::ZERO,
+        free: T::ZERO,
+        stiff_cubed: T::ZERO,
+        approach: zeros(),
+        error_speed: T::ZERO,
+    };
+
+    /// Of a level with rows of this `length`, see [`super::level::Level`]. Behind a call: it is in
+    /// the flash once.
+    #[inline(never)]
+    pub fn new(thresholds: &Thresholds<T>, gains: &LevelGains<T>, axes: Axes, length: T) -> Self {
+        let mut rate = T::ZERO;
+        for axis in in_turn::<3>(3) {
+            rate += gains.damping[(axis, axis)];
         }
-        let rows = task.axes.count().max(1);
+        let rate = rate / T::from_f64(axes.count().max(1) as f64);
         // Of the rows as they are: those of orientations are in 1/(kg m2).
-        let length = length(task);
-        let mobility = |limit: f64| limit / (length * length);
-        let z0 = mobility(limits.drive_mobility);
-        let stiff = mobility(limits.stiff_mobility);
+        let mobility = |limit: T| limit / (length * length);
+        let z0 = mobility(thresholds.drive_mobility);
+        let stiff = mobility(thresholds.stiff_mobility);
+        let release = mobility(thresholds.release_mobility);
         Self {
             drive: Filter::new(z0),
-            keep: Filter::new(mobility(limits.release_mobility)),
-            inverse_release: T::from_f64(1.0 / mobility(limits.release_mobility)),
-            lost_command: T::from_f64(rate / rows as f64 * limits.lost_speed / length),
-            free: T::from_f64(1.0 / (3.0 * z0)),
-            stiff_cubed: T::from_f64(stiff * stiff * stiff),
-            approach: approach(task).map(T::from_f64),
-            error_speed: T::from_f64(if shortens {
-                limits.error_speed / length
-            } else {
-                // Farther than any error that is believed.
-                1e15
-            }),
+            keep: Filter::new(release),
+            inverse_release: T::ONE / release,
+            lost_command: rate * thresholds.lost_speed / length,
+            free: T::ONE / (T::from_f64(3.0) * z0),
+            stiff_cubed: stiff * stiff * stiff,
+            approach: approach_rate(gains, axes),
+            error_speed: thresholds.error_speed / length,
         }
     }
 
@@ -114,6 +168,12 @@ impl<T: Real> LevelFilters<T> {
         below * below
     }
 
+    /// A mobility z \[1/kg\] as a share of the one from which on commands have no limit.
+    #[inline(always)]
+    pub fn nearness(&self, z: T) -> T {
+        z * self.free
+    }
+
     /// Largest command \[m/s2\] along a direction of mobility z \[1/kg\].
     #[inline(always)]
     pub fn most_command(&self, z: T) -> T {
@@ -130,23 +190,37 @@ impl<T: Real> LevelFilters<T> {
     }
 }
 
-/// What a row of a task is multiplied by to be a way \[m\].
-pub(crate) fn length(task: &Task) -> f64 {
-    match task.tracked {
-        Tracked::Position(_) => 1.0,
-        Tracked::Orientation(_) => ORIENTATION_LENGTH,
+/// K_p \[1/s2\] and K_d \[1/s\] of a level on its controlled axes, zero elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LevelGains<T: Real> {
+    pub stiffness: Matrix3<T>,
+    pub damping: Matrix3<T>,
+}
+
+impl<T: Real> LevelGains<T> {
+    /// Of no task.
+    pub const NONE: Self = Self {
+        stiffness: zeros(),
+        damping: zeros(),
+    };
+
+    /// A step towards others, of the way to which a share is `left`.
+    pub fn approach(&mut self, others: &Self, left: T) {
+        approach(
+            self.stiffness.as_mut_slice(),
+            others.stiffness.as_slice(),
+            left,
+        );
+        approach(self.damping.as_mut_slice(), others.damping.as_slice(), left);
     }
 }
 
 /// K_d^-1 K_p on the controlled axes, zero elsewhere.
-fn approach(task: &Task) -> Matrix3<f64> {
-    let (mut damping, mut speeds) = (Matrix3::identity(), Matrix3::zeros());
-    for row in in_turn::<3>(3) {
-        for column in in_turn::<3>(3) {
-            if task.axes.contains(row) && task.axes.contains(column) {
-                damping[(row, column)] = task.gains.damping[row][column];
-                speeds[(row, column)] = task.gains.stiffness[row][column];
-            }
+fn approach_rate<T: Real>(gains: &LevelGains<T>, axes: Axes) -> Matrix3<T> {
+    let (mut damping, mut speeds) = (gains.damping, gains.stiffness);
+    for axis in in_turn::<3>(3) {
+        if !axes.contains(axis) {
+            damping[(axis, axis)] = T::ONE;
         }
     }
     // Gauss and Jordan; K_d is positive definite and needs no other pivots.
@@ -155,8 +229,10 @@ fn approach(task: &Task) -> Matrix3<f64> {
             if row != pivot {
                 let share = damping[(row, pivot)] / damping[(pivot, pivot)];
                 for column in in_turn::<3>(3) {
-                    damping[(row, column)] -= share * damping[(pivot, column)];
-                    speeds[(row, column)] -= share * speeds[(pivot, column)];
+                    let (of_damping, of_speed) =
+                        (damping[(pivot, column)], speeds[(pivot, column)]);
+                    damping[(row, column)] -= share * of_damping;
+                    speeds[(row, column)] -= share * of_speed;
                 }
             }
         }

@@ -76,20 +76,31 @@ impl<T: Real> Followed<T> {
         reference
     }
 
-    /// The reference of a cycle, `interval_s` after the one before; the arm is at `q`.
+    /// The reference of a cycle, `interval_s` after the one before; the arm is at `q`. Levels of
+    /// `stale` slots hold.
     #[inline]
     pub(crate) fn update(
         &mut self,
         levels: &Levels<T>,
         reference: &Reference<T>,
+        stale: IndexSet,
         kinematics: &Kinematics<T>,
         q: &JointVector<T>,
         interval_s: T,
     ) {
         let (targets, at_once) = (reference.targets(), self.at_once);
         let mut joining = IndexSet::NONE;
-        let all = self.levels.iter_mut().zip(levels.as_slice()).zip(targets);
-        for (index, ((followed, level), target)) in all.enumerate() {
+        for level in levels.in_order() {
+            let slot = level.slot;
+            let (Some(followed), Some(target)) = (self.levels.get_mut(slot), targets.get(slot))
+            else {
+                continue;
+            };
+            let target = if stale.contains(slot) {
+                &Target::Hold
+            } else {
+                target
+            };
             let goes_on = match target {
                 Target::Hold => {
                     followed.hold(&level.tracked, kinematics, interval_s, at_once);
@@ -121,7 +132,7 @@ impl<T: Real> Followed<T> {
             if !goes_on {
                 followed.join(level, target, kinematics, interval_s);
             }
-            joining.insert_if(index, followed.decay.lasts());
+            joining.insert_if(slot, followed.decay.lasts());
         }
         self.posture
             .advance(&reference.posture, q, interval_s, at_once);
@@ -130,9 +141,16 @@ impl<T: Real> Followed<T> {
         self.at_once = false;
     }
 
-    /// What the levels follow, highest priority first.
+    /// What the level of a slot follows is forgotten.
+    pub(crate) fn forget(&mut self, slot: usize) {
+        if let Some(level) = self.levels.get_mut(slot) {
+            *level = FollowedLevel::FRESH;
+        }
+    }
+
+    /// What the levels follow, by slots.
     #[inline(always)]
-    pub(crate) fn levels(&self) -> &[FollowedLevel<T>; MAX_LEVELS] {
+    pub(crate) fn of_slots(&self) -> &[FollowedLevel<T>; MAX_LEVELS] {
         &self.levels
     }
 

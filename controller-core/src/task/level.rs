@@ -1,13 +1,15 @@
 //! Levels in the precision of the controller.
 
-use super::filters::{LevelFilters, length};
+use super::filters::{LevelFilters, LevelGains, Thresholds};
+use super::level_limits::LevelLimits;
+use super::order::Order;
 use super::orientation::{self, Quaternion};
-use super::set::{Task, TaskGains, TaskSet, Tracked};
+use super::set::{AfterStale, Task, TaskGains, TaskSet, Tracked};
 use super::{Axes, Target};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{ArmModel, Link, LinkFrame};
 use crate::joint::{Matrix3, Vector3, in_turn, zeros};
-use crate::ranges::{MAX_LEVELS, REACH_MARGIN_M};
+use crate::ranges::{MAX_LEVELS, ORIENTATION_LENGTH, REACH_MARGIN_M};
 use crate::real::Real;
 
 /// What a level tracks, in the precision of the controller.
@@ -46,14 +48,14 @@ impl<T: Real> LevelPoint<T> {
 /// A task in the precision of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Level<T: Real> {
+    /// Its slot, counted from 0: where a reference has its target, a status its bit.
+    pub slot: usize,
     pub tracked: LevelPoint<T>,
     pub axes: Axes,
     /// How far from the shoulder a target may be \[m\]; of an orientation 0.
     pub reach: T,
-    /// K_p \[1/s2\].
-    pub stiffness: Matrix3<T>,
-    /// K_d \[1/s\].
-    pub damping: Matrix3<T>,
+    /// K_p and K_d.
+    pub gains: LevelGains<T>,
     /// First row of the stack that is the level's.
     pub start: usize,
     /// Number of rows.
@@ -61,52 +63,111 @@ pub(crate) struct Level<T: Real> {
     /// K_d of the rows, by rows.
     row_damping: [[T; 3]; 3],
     /// What a row is multiplied by to be a way \[m\]: of orientations
-    /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH), else 1.
+    /// [`ORIENTATION_LENGTH`], else 1.
     pub length: T,
+    /// h: 1 in force, between 0 and 1 while it comes or goes.
+    pub activation: T,
     pub filters: LevelFilters<T>,
+    /// Without and with levels above.
+    thresholds: [Thresholds<T>; 2],
+    /// Age \[s\] from which on its reference is too old; 0: never.
+    pub stale_after_s: T,
+    /// Whether the level is released once it rests with such a reference.
+    pub stale_releases: bool,
 }
 
 impl<T: Real> Level<T> {
-    /// With its rows from `start` on.
-    #[inline(always)]
-    fn new(task: &Task, start: usize, arm: &ArmModel<T>, filters: LevelFilters<T>) -> Self {
-        let (tracked, reach) = match task.tracked {
+    /// Of no task.
+    pub const NONE: Self = Self {
+        slot: 0,
+        tracked: LevelPoint::Position(Link::L1, zeros()),
+        axes: Axes::XYZ,
+        reach: T::ZERO,
+        gains: LevelGains::NONE,
+        start: 0,
+        size: 0,
+        row_damping: [[T::ZERO; 3]; 3],
+        length: T::ZERO,
+        activation: T::ZERO,
+        filters: LevelFilters::NONE,
+        thresholds: [Thresholds::NONE; 2],
+        stale_after_s: T::ZERO,
+        stale_releases: false,
+    };
+
+    /// In a slot, without `shortens` as in [`Thresholds::new`]. It is the first level, of rows from
+    /// the first on, until it has a place. Behind a call, so that it is made in the place of the
+    /// result.
+    #[inline(never)]
+    pub fn new(task: &Task, slot: usize, arm: &ArmModel<T>, shortens: bool) -> Self {
+        let (tracked, reach, length) = match task.tracked {
             Tracked::Position(point) => {
                 let offset = Vector3::from(point.offset.map(T::from_f64));
                 let reach = arm.reach(&point) + T::from_f64(REACH_MARGIN_M);
-                (LevelPoint::Position(point.link, offset), reach)
+                (LevelPoint::Position(point.link, offset), reach, T::ONE)
             }
             Tracked::Orientation(LinkFrame { link, rotation }) => {
                 // nalgebra takes columns.
                 let rotation = nalgebra::Matrix3::from(rotation).transpose();
                 let turn = orientation::unit(&orientation::of_rotation(&rotation));
                 let turn = turn.map(T::from_f64);
-                (LevelPoint::Orientation(link, turn), T::ZERO)
+                let length = T::from_f64(ORIENTATION_LENGTH);
+                (LevelPoint::Orientation(link, turn), T::ZERO, length)
             }
         };
+        let gains = gains_on(&task.gains, task.axes);
+        let thresholds = [LevelLimits::FIRST, LevelLimits::BELOW]
+            .map(|of_place| Thresholds::new(&task.limits.unwrap_or(of_place), shortens));
         Self {
+            slot,
             tracked,
             axes: task.axes,
             reach,
-            stiffness: on_axes(&task.gains.stiffness, task.axes),
-            damping: on_axes(&task.gains.damping, task.axes),
-            start,
+            gains,
+            start: 0,
             size: task.axes.count().min(3),
-            row_damping: by_rows(&task.gains.damping, task.axes),
-            length: T::from_f64(length(task)),
-            filters,
+            row_damping: by_rows(&gains.damping, task.axes),
+            length,
+            activation: T::ONE,
+            filters: LevelFilters::new(&thresholds[0], &gains, task.axes, length),
+            thresholds,
+            stale_after_s: T::from_f64(task.stale.map_or(0.0, |stale| stale.age_s)),
+            stale_releases: task
+                .stale
+                .is_some_and(|stale| stale.then == AfterStale::Release),
         }
     }
 
-    /// The level at the place `number`, counted from 0, or behind the last one any.
+    /// The level that stands at a position of a set, counted from 0: those in force first.
     #[inline(never)]
-    fn at(set: &TaskSet, number: usize, arm: &ArmModel<T>, limits: bool) -> Self {
-        const UNUSED: Task =
-            Task::orientation(Link::L7.frame(), Axes::XYZ, TaskGains::uniform(1.0, 1.0));
-        let task = set.tasks().get(number).unwrap_or(&UNUSED);
-        let above = set.tasks().iter().take(number);
-        let start = above.map(|task| task.axes.count()).sum();
-        Self::new(task, start, arm, LevelFilters::new(task, number, limits))
+    fn at(set: &TaskSet, position: usize, arm: &ArmModel<T>, limits: bool) -> Self {
+        let slot = set.slot_at(position);
+        let Some(task) = set.tasks().get(slot) else {
+            return Self { slot, ..Self::NONE };
+        };
+        let mut level = Self::new(task, slot, arm, limits);
+        if position > 0 {
+            let gains = level.gains;
+            level.adjust(&gains, T::ONE);
+        }
+        let above = (0..position).filter_map(|above| set.tasks().get(set.slot_at(above)));
+        level.start = above.map(|task| task.axes.count()).sum();
+        level
+    }
+
+    /// With these gains, where levels stand above it, or by a share are about to.
+    #[inline(never)]
+    pub fn adjust(&mut self, gains: &LevelGains<T>, above: T) {
+        let [first, below] = &self.thresholds;
+        let thresholds = first.towards(below, above);
+        self.gains = *gains;
+        self.row_damping = by_rows(&gains.damping, self.axes);
+        self.filters = LevelFilters::new(&thresholds, gains, self.axes, self.length);
+    }
+
+    /// Whether another level tracks the same along the same axes.
+    pub fn tracks_as(&self, other: &Self) -> bool {
+        self.tracked == other.tracked && self.axes == other.axes
     }
 
     /// The rows of the stack that are the level's.
@@ -123,7 +184,14 @@ impl<T: Real> Level<T> {
     }
 }
 
-/// A gain on the controlled axes. The others are not read: whatever stands there stays out.
+/// Gains on the controlled axes. The others are not read: whatever stands there stays out.
+pub(crate) fn gains_on<T: Real>(gains: &TaskGains, axes: Axes) -> LevelGains<T> {
+    LevelGains {
+        stiffness: on_axes(&gains.stiffness, axes),
+        damping: on_axes(&gains.damping, axes),
+    }
+}
+
 /// Behind a call: it is in the flash once.
 #[inline(never)]
 fn on_axes<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> Matrix3<T> {
@@ -135,35 +203,55 @@ fn on_axes<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> Matrix3<T> {
 
 /// A gain by the rows of the controlled axes, zeros behind the last one. Behind a call, likewise.
 #[inline(never)]
-fn by_rows<T: Real>(gain: &[[f64; 3]; 3], axes: Axes) -> [[T; 3]; 3] {
+fn by_rows<T: Real>(gain: &Matrix3<T>, axes: Axes) -> [[T; 3]; 3] {
     let mut rows = [[T::ZERO; 3]; 3];
     let used = || in_turn::<3>(3).filter(|&axis| axes.contains(axis));
     for (row, i) in used().enumerate() {
         for (column, j) in used().enumerate() {
-            rows[row % 3][column % 3] = T::from_f64(gain[i][j]);
+            rows[row % 3][column % 3] = gain[(i, j)];
         }
     }
     rows
 }
 
-/// All levels in the precision of the controller, highest priority first.
+/// The levels of all slots in the precision of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Levels<T: Real> {
+    /// Those in force, highest priority first; behind them those that are not.
     levels: [Level<T>; MAX_LEVELS],
     count: usize,
+    slots: usize,
+    /// Whether a level in force comes or goes.
+    pub fades: bool,
+    /// Whether the age of any reference matters.
+    pub watched: bool,
     shoulder: Vector3<T>,
 }
 
 impl<T: Real> Levels<T> {
-    /// With `limits` errors are shortened that call for too much speed; else every one is followed.
-    /// Behind a call, so that the levels are made in the place of the result.
+    /// Without a slot.
+    pub const NONE: Self = Self {
+        levels: [Level::NONE; MAX_LEVELS],
+        count: 0,
+        slots: 0,
+        fades: false,
+        watched: false,
+        shoulder: zeros(),
+    };
+
+    /// All tasks of a set, those in force that are not absent. With `limits` errors are shortened that
+    /// call for too much speed; else every one is followed. Behind a call, so that the levels are made
+    /// in the place of the result.
     #[inline(never)]
     pub fn new(set: &TaskSet, arm: &ArmModel<T>, limits: bool) -> Self {
-        let at = |number| Level::at(set, number, arm, limits);
+        let at = |position| Level::at(set, position, arm, limits);
         Self {
             // One by one: a function that makes arrays makes them elsewhere first.
             levels: [at(0), at(1), at(2), at(3), at(4), at(5), at(6)],
-            count: set.tasks().len(),
+            count: set.count_in_force(),
+            slots: set.capacity().levels,
+            fades: false,
+            watched: set.tasks().iter().any(|task| task.stale.is_some()),
             shoulder: arm.shoulder(),
         }
     }
@@ -174,7 +262,7 @@ impl<T: Real> Levels<T> {
         for level in &mut self.levels {
             let uniform =
                 |gain: T| Matrix3::from_diagonal(&level.axes.select(&Vector3::repeat(gain)));
-            (level.stiffness, level.damping) = (uniform(stiffness), uniform(damping));
+            (level.gains.stiffness, level.gains.damping) = (uniform(stiffness), uniform(damping));
         }
     }
 
@@ -184,8 +272,92 @@ impl<T: Real> Levels<T> {
         &self.shoulder
     }
 
+    /// Number of slots: so many targets a reference needs.
     #[inline(always)]
-    pub fn as_slice(&self) -> &[Level<T>] {
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+
+    /// Those in force, highest priority first.
+    #[inline(always)]
+    pub fn in_order(&self) -> &[Level<T>] {
         self.levels.get(..self.count).unwrap_or(&[])
+    }
+
+    /// The same, to change them.
+    pub fn in_order_mut(&mut self) -> &mut [Level<T>] {
+        self.levels.get_mut(..self.count).unwrap_or(&mut [])
+    }
+
+    /// Those in force, and behind them those of the other slots; without rows where a slot never
+    /// had a task.
+    pub fn all(&self) -> &[Level<T>; MAX_LEVELS] {
+        &self.levels
+    }
+
+    /// The slots of those in force.
+    pub fn order(&self) -> Order {
+        let mut order = Order::NONE;
+        for level in self.in_order() {
+            order.insert(MAX_LEVELS, level.slot);
+        }
+        order
+    }
+
+    /// The level of a slot, whether it is in force or not.
+    pub fn slot_mut(&mut self, slot: usize) -> Option<&mut Level<T>> {
+        self.levels.iter_mut().find(|level| level.slot == slot)
+    }
+
+    /// Whether the level of a slot is in force.
+    pub fn is_in_force(&self, slot: usize) -> bool {
+        self.in_order().iter().any(|level| level.slot == slot)
+    }
+
+    /// Brings the level of a slot that is not in force to a place among those that are.
+    #[inline(never)]
+    pub fn bring(&mut self, slot: usize, place: usize) {
+        let found = self.levels.iter().position(|level| level.slot == slot);
+        let Some(found) = found.filter(|&found| found >= self.count) else {
+            return;
+        };
+        for upper in (place.min(self.count)..found).rev() {
+            self.swap_with_next(upper);
+        }
+        self.count += 1;
+        self.place();
+    }
+
+    /// Takes the level at a place among those in force out of force. Whether there is one.
+    #[inline(never)]
+    pub fn take(&mut self, place: usize) -> bool {
+        let found = place < self.count;
+        if found {
+            for upper in place + 1..self.count {
+                self.swap_with_next(upper - 1);
+            }
+            self.count -= 1;
+            self.place();
+        }
+        found
+    }
+
+    fn swap_with_next(&mut self, upper: usize) {
+        if let Some([upper, lower]) = self.levels.get_mut(upper..upper + 2) {
+            core::mem::swap(upper, lower);
+        }
+    }
+
+    /// Gives the levels in force their rows.
+    fn place(&mut self) {
+        self.watched = self
+            .levels
+            .iter()
+            .any(|level| level.stale_after_s > T::ZERO);
+        let mut start = 0;
+        for level in self.in_order_mut() {
+            level.start = start;
+            start += level.size;
+        }
     }
 }

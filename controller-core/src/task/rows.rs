@@ -2,11 +2,11 @@
 
 use super::followed::{Followed, Motion};
 use super::level::{Level, LevelPoint, Levels};
-use super::{Axes, orientation};
+use super::orientation;
 use crate::arm::kinematics::Kinematics;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
-use crate::ranges::MAX_ROWS;
+use crate::ranges::{EXACT_ROWS, MAX_ROWS};
 use crate::real::Real;
 
 /// The stacked rows of all levels in priority order, first level first. Behind the
@@ -26,7 +26,7 @@ pub struct TaskRows<T: Real> {
     /// ddx_d + K_d (dx_d - dx) + K_p x_err \[m/s2\], or \[rad/s2\]; within limits no error
     /// calls for more speed than its level may have.
     pub commanded: [T; MAX_ROWS],
-    /// Levels whose error calls for more speed than they may have: it is shortened in
+    /// Slots of levels whose error calls for more speed than they may have: it is shortened in
     /// `commanded`, not in `error`.
     pub shortened: IndexSet,
     /// x_err: x_d - x \[m\], or the chord of [`orientation::chord`] \[1\].
@@ -60,15 +60,17 @@ impl<T: Real> TaskRows<T> {
     ) {
         self.count = 0;
         self.shortened = IndexSet::NONE;
-        let levels = levels.as_slice().iter().zip(followed.levels());
-        for (number, (level, followed)) in levels.enumerate() {
+        for level in levels.in_order() {
+            let Some(followed) = followed.of_slots().get(level.slot) else {
+                continue;
+            };
             let desired = &followed.now;
             match &level.tracked {
                 LevelPoint::Position(link, offset) => {
                     let motion = kinematics.point(*link, offset);
                     let error = desired.position() - motion.x;
                     let commanded = Commanded::new(level, desired, error, motion.dx);
-                    self.push(number, level.axes, &commanded, joints, |axis, row, rate| {
+                    self.push(level, &commanded, joints, |axis, row, rate| {
                         kinematics.set_point_row(axis, *link, &motion, row, rate);
                     });
                 }
@@ -77,7 +79,7 @@ impl<T: Real> TaskRows<T> {
                     let actual = orientation::of_frame(&motion.rotation, turn);
                     let error = orientation::chord(&desired.place, &actual);
                     let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
-                    self.push(number, level.axes, &commanded, joints, |axis, row, rate| {
+                    self.push(level, &commanded, joints, |axis, row, rate| {
                         kinematics.set_angular_row(axis, *link, row, rate);
                     });
                 }
@@ -90,17 +92,16 @@ impl<T: Real> TaskRows<T> {
     #[inline(always)]
     fn push(
         &mut self,
-        number: usize,
-        axes: Axes,
+        level: &Level<T>,
         commanded: &Commanded<T>,
         joints: &JointState<T>,
         set_row: impl Fn(usize, &mut JointVector<T>, &mut JointVector<T>),
     ) {
         let start = self.count;
-        self.shortened.insert_if(number, commanded.shortened);
+        self.shortened.insert_if(level.slot, commanded.shortened);
         for axis in 0..3 {
             let place = self.count;
-            if axes.contains(axis) && place < MAX_ROWS {
+            if level.axes.contains(axis) && place < MAX_ROWS {
                 let rate = &mut self.jacobian_dot[place];
                 set_row(axis, &mut self.jacobian[place], rate);
                 let mut bias = T::ZERO;
@@ -128,13 +129,13 @@ impl<T: Real> TaskRows<T> {
         self.count = self.count.min(count);
     }
 
-    /// b of (12): the commanded acceleration less (dJ/dt) dq \[m/s2\].
+    /// b of (12), of the exact law: the commanded acceleration less (dJ/dt) dq \[m/s2\].
     #[must_use]
     #[inline]
-    pub fn acceleration(&self) -> [T; MAX_ROWS] {
-        let mut b = self.commanded;
-        for (b, &bias) in b.iter_mut().zip(&self.bias) {
-            *b -= bias;
+    pub fn acceleration(&self) -> [T; EXACT_ROWS] {
+        let mut b = [T::ZERO; EXACT_ROWS];
+        for ((b, commanded), bias) in b.iter_mut().zip(&self.commanded).zip(&self.bias) {
+            *b = *commanded - *bias;
         }
         b
     }
@@ -142,7 +143,7 @@ impl<T: Real> TaskRows<T> {
     /// (dJ/dt)^T F for one entry per row of `momentum` F: \[Nm\] for task momenta.
     #[must_use]
     #[inline]
-    pub fn rate_transposed_times(&self, momentum: &[T; MAX_ROWS]) -> JointVector<T> {
+    pub fn rate_transposed_times<const N: usize>(&self, momentum: &[T; N]) -> JointVector<T> {
         let mut transport: JointVector<T> = zeros();
         let rows = self.jacobian_dot.iter().zip(momentum);
         for (row, &momentum) in rows.take(self.count()) {
@@ -178,7 +179,9 @@ impl<T: Real> Commanded<T> {
         let followed = error * share;
         Self {
             error,
-            acceleration: desired.acceleration + level.damping * rate + level.stiffness * followed,
+            acceleration: desired.acceleration
+                + level.gains.damping * rate
+                + level.gains.stiffness * followed,
             shortened: share < T::ONE,
         }
     }

@@ -74,19 +74,20 @@ impl<T: Real> Target<T> {
     }
 }
 
-/// What the arm should do at one instant: a target per level in priority order, and a
-/// posture.
+/// What the arm should do at one instant: a target per slot, and a posture. Slots are the levels
+/// in their first order of priority ([`TaskSet`](crate::task::TaskSet)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference<T: Real> {
     targets: [Target<T>; MAX_LEVELS],
     count: usize,
+    ages_s: [T; MAX_LEVELS],
     /// q_d \[rad\], posture towards which the null space is compliant. With an
     /// integrated posture it counts at the first cycle only.
     pub posture: JointVector<T>,
 }
 
 impl<T: Real> Reference<T> {
-    /// One target per level, highest priority first, and q_d \[rad\]. More targets than
+    /// One target per slot, and q_d \[rad\]. More targets than
     /// [`MAX_LEVELS`] do not compile; a number that is not the controller's is a fault.
     #[must_use]
     pub fn new<const N: usize>(
@@ -111,17 +112,32 @@ impl<T: Real> Reference<T> {
         reference
     }
 
-    /// `levels` levels, at most [`MAX_LEVELS`], that hold where they are; q_d \[rad\].
+    /// `levels` targets, at most [`MAX_LEVELS`], that hold where they are; q_d \[rad\].
     #[must_use]
     pub fn hold(levels: usize, posture: impl Into<JointVector<T>>) -> Self {
         Self {
             targets: [Target::Hold; MAX_LEVELS],
             count: levels.min(MAX_LEVELS),
+            ages_s: [T::ZERO; MAX_LEVELS],
             posture: posture.into(),
         }
     }
 
-    /// The targets, highest priority first.
+    /// How old the target of a slot is \[s\], 0 unless said otherwise; of a slot that there is
+    /// not, nothing. What that means the task says ([`Stale`](crate::task::Stale)).
+    pub fn set_age(&mut self, slot: usize, age_s: T) {
+        if let Some(age) = self.ages_s.get_mut(slot) {
+            *age = age_s;
+        }
+    }
+
+    /// Age of the target of each slot \[s\].
+    #[must_use]
+    pub fn ages_s(&self) -> &[T; MAX_LEVELS] {
+        &self.ages_s
+    }
+
+    /// The targets, by slots.
     #[must_use]
     #[inline]
     pub fn targets(&self) -> &[Target<T>] {

@@ -11,9 +11,10 @@ use core::hint::black_box;
 use arms::{LWR_IV, LWR_IV_FLANGE};
 use controller_core::cycle::record::Recorder;
 use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
+use controller_core::task::{AfterStale, Stale};
 use controller_core::{
-    Axes, Controller, Link, LinkPoint, Measurement, Reference, State, Target, Task, TaskGains,
-    TaskSet,
+    Axes, Capacity, Change, Controller, Link, LinkPoint, Measurement, Order, Reference, State,
+    Target, Task, TaskGains, TaskSet,
 };
 use fci::client::{Client, Duty, Facts, Start};
 use fci::state::{FIELDS, LEN_MAX, StatePacket};
@@ -87,6 +88,75 @@ fn exercise<T: Number, const ROWS: usize>() -> bool {
     step.status.fault.is_none()
         && controller.level_count() == ROWS.div_ceil(3)
         && resolution.status.fault.is_none()
+}
+
+/// Whether tasks and gains change in a controller with all slots and rows, everything unknown to
+/// the compiler.
+fn exercise_changes<T: Number>() -> bool {
+    let tasks = TaskSet::new(black_box(&[level(Link::L7, 3), level(Link::L3, 2)]));
+    let room = black_box(Capacity {
+        levels: 7,
+        rows: 12,
+    });
+    let (Ok(mut config), Ok(tasks)) = (
+        scenario::config(FixedScenario::TwoLevel),
+        tasks
+            .map(|tasks| tasks.without(black_box(1)))
+            .and_then(|tasks| tasks.with_capacity(room)),
+    ) else {
+        return false;
+    };
+    config.tasks = tasks;
+    let Ok(controller) = Controller::<T>::new(black_box(&LWR_IV), black_box(&config)) else {
+        return false;
+    };
+    let q = FixedScenario::TwoLevel.start_deg().map(f64::to_radians);
+    let measurement = black_box(Measurement {
+        q: q.map(T::from_f64).into(),
+        dq: [T::HALF; 7].into(),
+        interval_s: T::from_f64(scenario::CYCLE_S),
+    });
+    let mut state = State::new();
+    let mut reference = Reference::hold(controller.level_count(), measurement.q);
+    reference.set_age(black_box(1), black_box(T::ONE));
+    let mut stale = level(Link::L5, 2);
+    stale.stale = Some(Stale {
+        age_s: 0.5,
+        then: AfterStale::Release,
+    });
+    let changes = [
+        Change::Add {
+            slot: 1,
+            task: level(Link::L3, 2),
+            place: 0,
+        },
+        Change::Add {
+            slot: 6,
+            task: stale,
+            place: Change::BELOW_ALL,
+        },
+        Change::Reorder(Order::new(&[6, 0, 1]).unwrap_or(Order::NONE)),
+        Change::Gains {
+            slot: 0,
+            gains: TaskGains::uniform(100.0, 20.0),
+        },
+        Change::NullSpace(config.null_space),
+        Change::Remove { slot: 0 },
+    ];
+    let mut clean = true;
+    for change in black_box(&changes) {
+        let begun = controller.transition(change, black_box(0.5));
+        let begun = begun.and_then(|transition| controller.begin(&mut state, &transition));
+        clean &= begun.is_ok();
+        let step = controller.step(&mut state, &measurement, black_box(&reference));
+        clean &= step.status.fault.is_none();
+    }
+    black_box((
+        controller.order(&state),
+        controller.rest_reference_of(&state, &measurement.q),
+    ));
+    state.reset();
+    clean
 }
 
 /// Everything that the codec of the FCI does with bytes that nobody knows; whether it takes
@@ -197,6 +267,7 @@ extern "C" fn exercise_all() -> bool {
             & exercise::<T, 5>()
             & exercise::<T, 6>()
             & exercise::<T, 7>()
+            & exercise_changes::<T>()
     }
     let versions = Version::ALL.map(|version| exercise_codec(version) & exercise_robot(version));
     precision::<f64>() & precision::<f32>() & versions.into_iter().all(|it| it) & exercise_client()

@@ -57,26 +57,23 @@ impl<T: Real> WhitenedMotion<T> {
         levels: &Levels<T>,
         spectrum: &Spectrum<T>,
     ) {
-        // y^T (s - V) of the directions of the levels that are still to come.
-        let mut rest = self.along;
-        for level in levels.as_slice().iter().rev() {
+        // Of the levels that are still to come y^T (s - V) of their directions.
+        *momentum = self.along;
+        for level in levels.in_order().iter().rev() {
             let (directions, rows) = (spectrum.of(level), level.rows());
             let mut of_level = [T::ZERO; 3];
-            for (direction, &rest) in directions.iter().zip(rest.get(rows.clone()).unwrap_or(&[])) {
+            let own = momentum.get(rows.clone()).unwrap_or(&[]);
+            for (direction, &rest) in directions.iter().zip(own) {
                 direction.add_part(direction.drive * rest, &mut of_level);
             }
-            let above = rest.get_mut(..level.start).unwrap_or(&mut []);
+            let above = momentum.get_mut(..level.start).unwrap_or(&mut []);
             for (direction, &of_row) in directions.iter().zip(&of_level) {
                 for (rest, &along) in above.iter_mut().zip(&direction.of_above) {
                     *rest -= along * of_row;
                 }
             }
-            for (momentum, of_row) in momentum
-                .get_mut(rows)
-                .unwrap_or(&mut [])
-                .iter_mut()
-                .zip(of_level)
-            {
+            let own = momentum.get_mut(rows).unwrap_or(&mut []);
+            for (momentum, of_row) in own.iter_mut().zip(of_level) {
                 *momentum = of_row;
             }
         }

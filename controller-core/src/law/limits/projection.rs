@@ -4,7 +4,7 @@
 //! ```text
 //! min (a - a*)^T T^-1 (a - a*)   over   lo <= a <= hi
 //! T   = M^-1 - sum over directions k of  kk_k x_k x_k^T,    x_k = L^-T y_k
-//! kk  = z^2 / (z^3 + g zw^3),    g = 1 + (dev / dev0)^2
+//! kk  = h z^2 / (z^3 + g zw^3),    g = 1 + (dev / dev0)^2
 //! ```
 //!
 //! T is how the arm gives: as M^-1 where no task looks, stiffened in the directions of the levels
@@ -38,7 +38,7 @@ pub struct Projection<T: Real> {
     pub pivots: u8,
     /// Whether a bound was still violated after [`PIVOTS`]; then it is kept by a cut.
     pub unresolved: bool,
-    /// |J_i (a - a*)| \[m/s2\] of each level: what the bounds take from it. Of orientations times
+    /// |J_i (a - a*)| \[m/s2\] of the level of each slot: what the bounds take from it. Of orientations times
     /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH).
     pub disturbance: [T; MAX_LEVELS],
     /// n^T M (a - a*) \[W\]: what the bounds do on the null-space motion; above 0 they drive it.
@@ -93,20 +93,29 @@ impl<T: Real> Projection<T> {
             self.at_bound = [IndexSet::NONE; 2];
             (self.pivots, self.unresolved) = (0, false);
             self.power = T::ZERO;
-            for (level, _) in (0..MAX_LEVELS).zip(wished.levels.as_slice()) {
-                self.disturb(level, T::ZERO);
+            for level in wished.levels.in_order() {
+                self.disturb(level.slot, T::ZERO);
             }
         } else {
             self.project(wished);
         }
     }
 
-    /// What the bounds take from a level.
+    /// No disturbance of the level of a slot is remembered.
+    pub(crate) fn forget_level(&mut self, slot: usize) {
+        if let Some(smoothed) = self.smoothed.get_mut(slot) {
+            *smoothed = T::ZERO;
+        }
+    }
+
+    /// What the bounds take from the level of a slot.
     #[inline(always)]
-    fn disturb(&mut self, level: usize, disturbance: T) {
-        let smoothed = &mut self.smoothed[level];
-        *smoothed += (disturbance - *smoothed) * T::from_f64(DISTURBANCE_SMOOTHING);
-        self.disturbance[level] = disturbance;
+    fn disturb(&mut self, slot: usize, disturbance: T) {
+        let remembered = self.smoothed.get_mut(slot);
+        if let (Some(smoothed), Some(shown)) = (remembered, self.disturbance.get_mut(slot)) {
+            *smoothed += (disturbance - *smoothed) * T::from_f64(DISTURBANCE_SMOOTHING);
+            *shown = disturbance;
+        }
     }
 
     #[inline(never)]
@@ -142,12 +151,13 @@ impl<T: Real> Projection<T> {
         let tableau = &mut self.search.tableau;
         tableau.set_inverse(cholesky);
         let softening = T::from_f64(1.0 / SOFTENING_DISTURBANCE);
-        for (level, &smoothed) in wished.levels.as_slice().iter().zip(&self.smoothed) {
-            let share = smoothed * softening;
+        for level in wished.levels.in_order() {
+            let smoothed = self.smoothed.get(level.slot).copied();
+            let share = smoothed.unwrap_or(T::ZERO) * softening;
             let soft = (T::ONE + share * share) * level.filters.stiff_cubed;
             for direction in wished.spectrum.of(level) {
                 let z = direction.mobility.larger(T::ZERO);
-                let held = z * z / (z * z * z + soft);
+                let held = level.activation * z * z / (z * z * z + soft);
                 tableau.stiffen(cholesky, &direction.along, held);
             }
         }
@@ -161,14 +171,14 @@ impl<T: Real> Projection<T> {
         let torque = wished.dynamics.mass_matrix * difference;
         self.torque = wished.torque + torque;
         self.power = wished.null_velocity.dot(&torque);
-        for (number, level) in (0..MAX_LEVELS).zip(wished.levels.as_slice()) {
+        for level in wished.levels.in_order() {
             let mut squared = T::ZERO;
             let rows = wished.rows.jacobian.get(level.rows()).unwrap_or(&[]);
             for row in rows.iter().take(3) {
                 let along = row.dot(&difference);
                 squared += along * along;
             }
-            self.disturb(number, squared.square_root() * level.length);
+            self.disturb(level.slot, squared.square_root() * level.length);
         }
     }
 }

@@ -9,7 +9,8 @@
 //! z \[1/kg\] is the mobility of a direction: the acceleration along it of a unit force. At a
 //! singularity it goes to zero, and 1/z with which the exact law drives it grows without bound.
 //! Two filters take the place of 1/z, equal to it above their thresholds: d, with which a
-//! direction is driven, and p, with which it is kept from the levels below.
+//! direction is driven, and p, with which it is kept from the levels below. Both are multiplied by
+//! h, the activation of the level: where it comes or goes the levels below get the rest.
 
 use super::eigen::Eigen;
 use crate::fault::IndexSet;
@@ -72,12 +73,15 @@ impl<T: Real> Direction<T> {
 pub struct Spectrum<T: Real> {
     count: usize,
     directions: [Direction<T>; MAX_ROWS],
-    /// rho: the square of how far the most released direction is below its threshold, 0 to 1.
+    /// rho: the square of how far the most released direction is below its threshold, times h; 0
+    /// to 1.
     pub release: T,
-    /// Levels with a direction that is driven by less than 1/z.
+    /// Slots of levels with a direction that is driven by less than 1/z.
     pub degraded: IndexSet,
-    /// Levels with a direction of which the levels below get a share.
+    /// Slots of levels in force with a direction of which the levels below get a share.
     pub released: IndexSet,
+    /// Whether the levels below get a share of any direction: a level is released, comes or goes.
+    pub shares: bool,
 }
 
 impl<T: Real> Spectrum<T> {
@@ -90,6 +94,7 @@ impl<T: Real> Spectrum<T> {
             release: T::ZERO,
             degraded: IndexSet::NONE,
             released: IndexSet::NONE,
+            shares: false,
         }
     }
 
@@ -109,21 +114,22 @@ impl<T: Real> Spectrum<T> {
             let row = cholesky.solve_lower(row);
             (direction.row, direction.along) = (row, row);
         }
-        for (number, level) in levels.as_slice().iter().enumerate() {
-            self.split(number, level);
+        for level in levels.in_order() {
+            self.split(level);
         }
+        self.shares = levels.fades | self.released.any();
     }
 
     /// The directions of a level, those of the levels above it known.
     #[inline(always)]
-    fn split(&mut self, number: usize, level: &Level<T>) {
+    fn split(&mut self, level: &Level<T>) {
         let Some((above, from)) = self.directions.split_at_mut_checked(level.start) else {
             return;
         };
         let Some(own) = from.get_mut(..level.size) else {
             return;
         };
-        if number > 0 {
+        if !above.is_empty() {
             for direction in &mut *own {
                 direction.along = left_by(above, &direction.row, &mut direction.of_above);
             }
@@ -140,10 +146,28 @@ impl<T: Real> Spectrum<T> {
             [direction.drive, direction.keep] = filters.of(z);
             least = if z < least { z } else { least };
         }
+        let mut release = filters.release(least);
+        if level.activation < T::ONE {
+            fade(own, level.activation);
+            release *= level.activation;
+        }
         let [degraded, released] = filters.lost(least);
-        self.degraded.insert_if(number, degraded);
-        self.released.insert_if(number, released);
-        self.release = self.release.larger(filters.release(least));
+        self.degraded.insert_if(level.slot, degraded);
+        self.released.insert_if(level.slot, released);
+        self.release = self.release.larger(release);
+    }
+
+    /// How near each direction is to have a limit of its command, at 1; 0 behind the last one.
+    #[must_use]
+    pub(crate) fn nearness(&self, levels: &Levels<T>) -> [T; MAX_ROWS] {
+        let mut nearness = [T::ZERO; MAX_ROWS];
+        for level in levels.in_order() {
+            let places = nearness.get_mut(level.rows()).unwrap_or(&mut []);
+            for (place, direction) in places.iter_mut().zip(self.of(level)) {
+                *place = level.filters.nearness(direction.mobility);
+            }
+        }
+        nearness
     }
 
     /// All directions, level by level.
@@ -163,6 +187,16 @@ impl<T: Real> Spectrum<T> {
     #[inline(always)]
     pub(super) fn of(&self, level: &Level<T>) -> &[Direction<T>] {
         self.directions.get(level.rows()).unwrap_or(&[])
+    }
+}
+
+/// Of a level that comes or goes.
+#[cold]
+#[inline(never)]
+fn fade<T: Real>(own: &mut [Direction<T>], activation: T) {
+    for direction in own {
+        direction.drive *= activation;
+        direction.keep *= activation;
     }
 }
 

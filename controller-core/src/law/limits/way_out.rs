@@ -126,16 +126,16 @@ impl<T: Real> WayOut<T> {
     /// cycle bends for one. Whether there is one.
     #[inline(never)]
     fn bend_for_first(&mut self, arm: &Straight<'_, T>) -> bool {
-        for (number, level) in arm.levels.as_slice().iter().enumerate() {
+        for level in arm.levels.in_order() {
             let lost = lost_error(level, arm.rows, arm.spectrum);
             let error = lost.dot(&lost).square_root();
             let least = T::from_f64(BEND_ERROR) / level.length;
-            let share = (error / least - T::ONE).least(T::ONE);
+            let share = (error / least - T::ONE).least(T::ONE) * level.activation;
             if share > T::ZERO {
                 self.acceleration = self.nearest(arm);
                 self.whitened = arm.dynamics.cholesky.upper_times(&self.acceleration);
                 let way = self.side(arm, level, &(lost / error));
-                self.stuck.insert_if(number, way.is_none());
+                self.stuck.insert_if(level.slot, way.is_none());
                 let asked = way.map_or(T::ZERO, |side| self.asked(arm, side) * share);
                 self.acceleration *= asked;
                 self.whitened *= asked;

@@ -14,7 +14,7 @@
 
 use super::bounds::JointBounds;
 use super::motion::WhitenedMotion;
-use super::spectrum::{Spectrum, left_by};
+use super::spectrum::{Direction, Spectrum, left_by};
 use super::way_out::WayOut;
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
@@ -31,21 +31,21 @@ pub struct Wish<T: Real> {
     pub acceleration: JointVector<T>,
     /// Torque \[Nm\] that gives it.
     pub torque: JointVector<T>,
-    /// k: share of what each level asks for that it gets, 1 where nothing is scaled.
+    /// k: share of what the level of each slot asks for that it gets, 1 where nothing is scaled.
     pub level_share: [T; MAX_LEVELS],
     /// The same of the null space.
     pub null_share: T,
-    /// Levels whose share is below 1; bit 7, the eighth, is the null space.
+    /// Slots of levels whose share is below 1; bit 7, the eighth, is the null space.
     pub scaled: IndexSet,
-    /// Levels whose command was shortened: by the speed of their error, or along a direction
+    /// Slots of levels whose command was shortened: by the speed of their error, or along a direction
     /// that gets lost.
     pub shaped: IndexSet,
-    /// Acceleration \[m/s2\] of each level by what stands below it; 0 in cycles in which no level
-    /// is released: then it is rounding. Of orientations times
+    /// Acceleration \[m/s2\] of the level of each slot by what stands below it; 0 in cycles in
+    /// which nothing is given to levels below: then it is rounding. Of orientations times
     /// [`ORIENTATION_LENGTH`](crate::ranges::ORIENTATION_LENGTH).
     pub leak: [T; MAX_LEVELS],
-    /// What the rows of each level get by the stages down to its own, in cycles in which a level
-    /// is released.
+    /// What the rows of each level get by the stages down to its own, in cycles in which levels
+    /// below get a share of a direction.
     of_rows: [T; MAX_ROWS],
     // Of the cycle alone; here, because on the stack they would have to be cleared first.
     /// u: what the stages so far ask for, whitened.
@@ -118,24 +118,27 @@ impl<T: Real> Wish<T> {
         self.torque = dynamics.coriolis + dynamics.gravity - ask.residual;
         self.residual = cholesky.solve_lower(ask.residual);
         (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
-        let released = spectrum.released.any();
-        for (number, level) in ask.levels.as_slice().iter().enumerate().take(MAX_LEVELS) {
-            let (mut command, shaped) = self.command(ask, number, level);
-            if released {
+        if ask.levels.in_order().is_empty() {
+            (self.whitened, self.acceleration) = (zeros(), zeros());
+        }
+        for level in ask.levels.in_order() {
+            let (mut command, shaped) = self.command(ask, level);
+            if spectrum.shares {
                 // Once more: of a direction that a level above has released, the share that it
                 // has been given back twice.
                 command = left_by(spectrum.above(level), &command, &mut self.parts);
             }
-            let share = if number > 0 {
+            let share = if level.start > 0 {
                 let before = self.torque + cholesky.lower_times(&self.residual);
                 self.add(ask, &command, Some(&before))
             } else {
                 self.add(ask, &command, None)
             };
-            (self.level_share[number], self.leak[number]) = (share, T::ZERO);
-            self.shaped.insert_if(number, shaped);
-            self.scaled.insert_if(number, share < T::ONE);
-            if released {
+            let slot = level.slot.min(MAX_LEVELS - 1);
+            (self.level_share[slot], self.leak[slot]) = (share, T::ZERO);
+            self.shaped.insert_if(slot, shaped);
+            self.scaled.insert_if(slot, share < T::ONE);
+            if spectrum.shares {
                 let known = self.whitened + self.residual;
                 set_rows(&mut self.of_rows, level, spectrum, &known);
             }
@@ -144,7 +147,7 @@ impl<T: Real> Wish<T> {
         let before = self.torque;
         self.null_share = self.add(ask, &command, Some(&before));
         self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
-        if released {
+        if spectrum.shares {
             self.set_leaks(ask);
         }
     }
@@ -188,12 +191,8 @@ impl<T: Real> Wish<T> {
 
     /// u_i, and whether it was shortened; takes off the residual what the level compensates.
     #[inline(always)]
-    fn command(
-        &mut self,
-        ask: &Ask<'_, T>,
-        number: usize,
-        level: &Level<T>,
-    ) -> (JointVector<T>, bool) {
+    fn command(&mut self, ask: &Ask<'_, T>, level: &Level<T>) -> (JointVector<T>, bool) {
+        let first = level.start == 0;
         let (rows, directions) = (ask.rows, ask.spectrum.of(level));
         let along = ask.motion.along.get(level.rows()).unwrap_or(&[]);
         let commanded = rows.commanded.get(level.rows()).unwrap_or(&[]);
@@ -205,30 +204,32 @@ impl<T: Real> Wish<T> {
             directions.iter().zip(given).enumerate().take(3)
         {
             wanted[k] = *commanded - *bias;
-            if number > 0 {
+            if !first {
                 wanted[k] -= direction.row.dot(&known);
             }
             direction.add_part(*along, &mut speed);
         }
         let damped = level.damping_of_rows(&speed);
-        let mut shaped = rows.shortened.contains(number);
+        let mut shaped = rows.shortened.contains(level.slot);
         let (mut forces, mut compensated) = ([T::ZERO; 3], [T::ZERO; 3]);
         let parts = forces.iter_mut().zip(&mut compensated);
         for (direction, (force, compensated)) in directions.iter().zip(parts) {
-            let residual = direction.along.dot(&self.residual);
-            let kept = direction.keep * residual;
-            let own = direction.part(&damped);
-            // The residual has acted on the rows above, all of it, but what the level
-            // compensates does not. Nothing but the residual has acted on those of the first.
-            let mut asked = direction.part(&wanted) + direction.mobility * kept + own;
-            if number == 0 {
-                asked -= residual;
-            }
+            let asked = Asked::of(direction, &wanted, &damped, &self.residual, first);
             let most = level.filters.most_command(direction.mobility);
-            let cut = asked.limited(-most, most);
-            shaped |= cut != asked;
-            *force = direction.drive * cut - direction.keep * own;
-            *compensated = kept;
+            let cut = asked.command.limited(-most, most);
+            shaped |= cut != asked.command;
+            *force = direction.drive * cut - direction.keep * asked.own;
+            *compensated = asked.kept;
+        }
+        if ask.levels.fades {
+            // By copies: what is pointed to could not stay in registers where nothing fades.
+            let residual = self.residual;
+            let asked = move |direction: &Direction<T>| {
+                Asked::of(direction, &wanted, &damped, &residual, first)
+            };
+            let (together, is_cut) = cut_together(level, directions, asked);
+            forces = together;
+            shaped |= is_cut;
         }
         let mut command = match directions {
             [first, ..] => first.along * forces[0],
@@ -265,7 +266,10 @@ impl<T: Real> Wish<T> {
     #[inline(never)]
     fn set_leaks(&mut self, ask: &Ask<'_, T>) {
         let mut all = [T::ZERO; MAX_ROWS];
-        for (level, leak) in ask.levels.as_slice().iter().zip(&mut self.leak) {
+        for level in ask.levels.in_order() {
+            let Some(leak) = self.leak.get_mut(level.slot) else {
+                continue;
+            };
             set_rows(&mut all, level, ask.spectrum, &self.whitened);
             let mut squared = T::ZERO;
             let rows = all.get(level.rows()).unwrap_or(&[]).iter();
@@ -276,6 +280,64 @@ impl<T: Real> Wish<T> {
             *leak = squared.square_root() * level.length;
         }
     }
+}
+
+/// What a level asks for along a direction.
+struct Asked<T: Real> {
+    /// c \[m/s2\], uncut.
+    command: T,
+    /// p times the residual: what of it the level compensates.
+    kept: T,
+    /// e.
+    own: T,
+}
+
+impl<T: Real> Asked<T> {
+    #[inline(always)]
+    fn of(
+        direction: &Direction<T>,
+        wanted: &[T; 3],
+        damped: &[T; 3],
+        residual: &JointVector<T>,
+        first: bool,
+    ) -> Self {
+        let residual = direction.along.dot(residual);
+        let kept = direction.keep * residual;
+        let own = direction.part(damped);
+        // The residual has acted on the rows above, all of it, but what the level compensates does
+        // not. Nothing but the residual has acted on those of the first.
+        let mut command = direction.part(wanted) + direction.mobility * kept + own;
+        if first {
+            command -= residual;
+        }
+        Self { command, kept, own }
+    }
+}
+
+/// Where mobilities go fast directions turn fast, and a command that is cut direction by direction
+/// turns with them: it is cut together with those that may have no more. The forces, and whether
+/// they were cut.
+#[cold]
+#[inline(never)]
+fn cut_together<T: Real>(
+    level: &Level<T>,
+    directions: &[Direction<T>],
+    asked: impl Fn(&Direction<T>) -> Asked<T>,
+) -> ([T; 3], bool) {
+    let most = |direction: &Direction<T>| level.filters.most_command(direction.mobility);
+    let (mut forces, mut is_cut) = ([T::ZERO; 3], false);
+    for (force, direction) in forces.iter_mut().zip(directions) {
+        let (of_own, limit) = (asked(direction), most(direction));
+        let mut squared = T::ZERO;
+        for other in directions.iter().take(3) {
+            let share = asked(other).command / most(other).larger(limit);
+            squared += share * share;
+        }
+        let excess = squared.square_root().larger(T::ONE);
+        is_cut |= excess > T::ONE;
+        *force = direction.drive * (of_own.command / excess) - direction.keep * of_own.own;
+    }
+    (forces, is_cut)
 }
 
 /// What the rows of a level get by x: A x.

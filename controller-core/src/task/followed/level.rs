@@ -134,6 +134,11 @@ impl<T: Real> FollowedLevel<T> {
         decay: Decay::NONE,
     };
 
+    /// Whether it holds and rests.
+    pub fn rests(&self) -> bool {
+        matches!(self.phase, Phase::Holding(_)) && !self.decay.lasts()
+    }
+
     /// Whether a target that is `way` from where the one before leads to is followed without
     /// more ado, whichever axes are controlled.
     #[inline(always)]
