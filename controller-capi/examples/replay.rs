@@ -3,9 +3,10 @@
 use arms::{LWR_IV, LWR_IV_DAMPING, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
 use controller_core::joint::JointVector;
 use controller_core::real::Real;
+use controller_core::task::{AfterStale, Stale};
 use controller_core::{
-    Axes, Controller, ControllerConfig, Link, LinkPoint, Measurement, NullSpace, State, Target,
-    Task, TaskGains, TaskSet,
+    Axes, Change, Controller, ControllerConfig, Link, LinkPoint, Measurement, NullSpace, Order,
+    State, Target, Task, TaskGains, TaskSet,
 };
 use std::fmt::Write;
 use stratum::Scalar;
@@ -42,6 +43,35 @@ fn hash_bits(hash: u64, bits: u64) -> u64 {
     })
 }
 
+/// Stale after a quarter of a second, and released then.
+fn stale(task: Task) -> Task {
+    Task {
+        stale: Some(Stale {
+            age_s: 0.25,
+            then: AfterStale::Release,
+        }),
+        ..task
+    }
+}
+
+/// What changes at a cycle.
+fn changes(cycle: u32, config: &ControllerConfig, wrist: Task) -> Option<Change> {
+    let add = |slot, task, place| Change::Add { slot, task, place };
+    Some(match cycle {
+        600 => add(3, wrist, 1),
+        700 => Change::Gains {
+            slot: 0,
+            gains: TaskGains::uniform(100.0, 20.0),
+        },
+        1000 => Change::Reorder(Order::new(&[2, 0, 3, 1])?),
+        1700 => Change::Remove { slot: 0 },
+        2600 => add(0, config.tasks.tasks()[0], 0),
+        2800 => Change::Remove { slot: 3 },
+        3600 => Change::NullSpace(config.null_space.stiffened(0.5)),
+        _ => return None,
+    })
+}
+
 fn replay() -> Result<String, Box<dyn std::error::Error>> {
     let vector = |values: [f64; 7]| JointVector::from(values.map(Scalar::from_f64));
     let gains = TaskGains::uniform(400.0, 40.0);
@@ -49,12 +79,19 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
         link: Link::L3,
         offset: [0.0; 3],
     };
+    let wrist = LinkPoint {
+        link: Link::L5,
+        offset: [0.0; 3],
+    };
+    let wrist = Task::position(wrist, Axes::Z, gains);
     let config = ControllerConfig {
         tasks: TaskSet::new(&[
             Task::position(LWR_IV_FLANGE, Axes::XYZ, gains),
-            Task::position(elbow, Axes::XY, gains),
+            stale(Task::position(elbow, Axes::XY, gains)),
             Task::orientation(Link::L7.frame(), Axes::Z, gains),
-        ])?,
+            wrist,
+        ])?
+        .without(3),
         null_space: NullSpace::diagonal(LWR_IV_STIFFNESS, LWR_IV_DAMPING),
         observer_gain: [50.0; 7],
         cycle_s: 0.002,
@@ -63,16 +100,17 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
     let controller = Controller::<Scalar>::new(&LWR_IV, &config)?;
     let mut state = State::new();
     let mut hash = 0xcbf2_9ce4_8422_2325;
-    let mut saturated = 0;
+    let (mut saturated, mut age_s) = (0, 0.0);
     let bits = Scalar::default().to_bits().count_zeros();
     let mut lines = format!("stratum {} f{bits}\n", env!("CARGO_PKG_VERSION"));
     for cycle in 0..CYCLES {
         let (q, dq) = measure(cycle);
-        let mut reference = controller.rest_reference(&vector(q));
+        let mut reference = controller.rest_reference_of(&state, &vector(q));
         if let [
             Target::Position { x, .. },
             elbow,
             Target::Orientation { q, w, .. },
+            _,
         ] = reference.targets_mut()
         {
             x.z = Scalar::from_f64(x.z.to_f64() + wave(64 * cycle) / 2_097_152.0);
@@ -86,6 +124,15 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
         if cycle == 3010 {
             state.reset();
         }
+        if let Some(change) = changes(cycle, &config, wrist) {
+            let duration_s = if cycle == 2800 { 1.0 } else { 0.5 };
+            let transition = controller.transition(&change, duration_s)?;
+            controller.begin(&mut state, &transition)?;
+        }
+        if cycle >= 4000 {
+            age_s = f64::from(cycle - 4000) / 512.0;
+        }
+        reference.set_age(1, Scalar::from_f64(age_s));
         let interval_s = if cycle == 3000 { -1.0 } else { 1.0 / 512.0 };
         let measurement = Measurement {
             q: vector(q),

@@ -51,6 +51,22 @@ enum {
   STRATUM_ERROR_TARGET = 11,
   // A position for a level that tracks an orientation, or the other way round.
   STRATUM_ERROR_WRONG_TARGET = 12,
+  // The duration of a change is outside 0.05 to 60 s.
+  STRATUM_ERROR_CHANGE_DURATION = 13,
+  // The level is there, or another task is still leaving it.
+  STRATUM_ERROR_LEVEL_TAKEN = 14,
+  // The level is not there.
+  STRATUM_ERROR_LEVEL_EMPTY = 15,
+  // No such place among the levels; places count from 1.
+  STRATUM_ERROR_PLACE = 16,
+  // The levels would have more rows together than there is room for.
+  STRATUM_ERROR_ROOM = 17,
+  // An order that has not each level that is there once.
+  STRATUM_ERROR_ORDER = 18,
+  // Levels of the exact law are neither added, removed nor reordered.
+  STRATUM_ERROR_EXACT_LAW = 19,
+  // A null space whose damping or posture is of another kind than the controller's.
+  STRATUM_ERROR_NULL_SPACE_KIND = 20,
   // Fault: a measurement or reference that cannot be true; the arm is braked and held.
   STRATUM_FAULT_IMPLAUSIBLE = 32,
   // Fault: the law gave a torque that is not finite; the arm is braked and held.
@@ -62,9 +78,10 @@ enum {
   STRATUM_CONFIG_OTHER = 128,
   // Settings: level_count is not 1 to 7.
   STRATUM_CONFIG_LEVELS = 129,
-  // Settings: a choice (task, axes, damping, posture) that does not exist.
+  // Settings: a choice (task, axes, absent, stale, damping, posture) that does not exist.
   STRATUM_CONFIG_CHOICE = 130,
-  // Settings: the levels have more than 7 rows together.
+  // Settings: the levels have more than 12 rows together, or with the exact law more than
+  // 7.
   STRATUM_CONFIG_ROWS = 131,
   // Settings: a level has no axis.
   STRATUM_CONFIG_NO_AXIS = 132,
@@ -94,6 +111,8 @@ enum {
   STRATUM_CONFIG_LEVEL_LIMITS = 144,
   // Settings: an integrated posture needs the exact law.
   STRATUM_CONFIG_POSTURE = 145,
+  // Settings: the age of a stale reference is outside its range.
+  STRATUM_CONFIG_STALE_AGE = 146,
   // Arm or tool: a parameter is not finite.
   STRATUM_CONFIG_ARM_NON_FINITE = 160,
   // Arm: a parameter that must be above 0 is not.
@@ -130,6 +149,10 @@ enum {
   STRATUM_LIMIT_UNRESOLVED = 105,
   // Limit: a level off its target in a singularity that no free motion leads out of.
   STRATUM_LIMIT_STUCK = 106,
+  // Limit: a level, or the null space, on its way to tasks or gains that were changed.
+  STRATUM_LIMIT_CHANGING = 107,
+  // Limit: a level whose reference is too old: it comes to rest.
+  STRATUM_LIMIT_STALE = 108,
 };
 
 // What a level tracks.
@@ -172,6 +195,15 @@ enum {
   STRATUM_POSTURE_INTEGRAL_UNCOUPLED = 2,
 };
 
+// What a level does that came to rest because its reference is too old.
+typedef uint32_t StratumStaleKind;
+enum {
+  // It stays.
+  STRATUM_STALE_HOLD = 0,
+  // It goes until there is a fresh one.
+  STRATUM_STALE_RELEASE = 1,
+};
+
 // What a cycle is part of; a fault is latched from STRATUM_MODE_BRAKING on.
 typedef uint32_t StratumMode;
 enum {
@@ -203,10 +235,10 @@ enum {
 };
 
 // Storage of a controller in words of 8 bytes.
-#define STRATUM_CONTROLLER_WORDS 900
+#define STRATUM_CONTROLLER_WORDS 1100
 
 // Storage of a state in words of 8 bytes.
-#define STRATUM_STATE_WORDS 1650
+#define STRATUM_STATE_WORDS 3000
 
 // sizeof(StratumController).
 #define STRATUM_CONTROLLER_SIZE (STRATUM_CONTROLLER_WORDS * 8)
@@ -224,7 +256,7 @@ enum {
 #define STRATUM_TEXT_SIZE 512
 
 // sizeof(StratumStatus).
-#define STRATUM_STATUS_SIZE 88
+#define STRATUM_STATUS_SIZE 96
 
 // Joints of an arm.
 #define STRATUM_JOINTS 7
@@ -236,7 +268,7 @@ enum {
 #define STRATUM_REFERENCE_SIZE 112
 
 // The version of the interface: numbers, structs and functions of this header.
-#define STRATUM_ABI_VERSION 5
+#define STRATUM_ABI_VERSION 6
 
 // Most levels.
 #define STRATUM_LEVELS 7
@@ -245,7 +277,7 @@ enum {
 #define STRATUM_ON_TOOL 8
 
 // sizeof(StratumSettings).
-#define STRATUM_SETTINGS_SIZE 5296
+#define STRATUM_SETTINGS_SIZE 5408
 
 // Pose of a frame in a parent frame.
 typedef struct StratumPose {
@@ -388,21 +420,28 @@ typedef struct StratumLevel {
   double rotation[3][3];
   // Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
   StratumAxes axes;
-  // Always 0: completes the struct to whole words.
-  uint32_t reserved;
+  // 1: the level is not there until stratum_level_add; else 0.
+  uint32_t absent;
   // Stiffness of the error, 1/s2: acts on acceleration.
   double stiffness[3][3];
   // Damping of the error, 1/s.
   double damping[3][3];
   // What happens near singularities and far from the target.
   struct StratumLevelLimits limits;
+  // Age from which on the level's reference is too old, s: it comes to rest then. 0: never.
+  double stale_after_s;
+  // STRATUM_STALE_HOLD or STRATUM_STALE_RELEASE: what follows once it rests.
+  StratumStaleKind stale;
+  // Always 0: completes the struct to whole words.
+  uint32_t reserved;
 } StratumLevel;
 
 // Everything a controller is made of.
 typedef struct StratumSettings {
   // Set by stratum_settings_default; not to be changed.
   uint32_t abi;
-  // Levels in use, 1 to 7; together at most 7 axes.
+  // Levels in use, with those that are absent, 1 to 7; together at most 12 axes, with the exact
+  // law 7.
   uint32_t level_count;
   // The arm with its limits, mounted as it is.
   struct StratumArm arm;
@@ -501,6 +540,10 @@ typedef struct StratumStatus {
   uint32_t unresolved;
   // STRATUM_LIMIT_STUCK: levels.
   uint32_t stuck;
+  // STRATUM_LIMIT_CHANGING: levels; bit 7 is the null space.
+  uint32_t changing;
+  // STRATUM_LIMIT_STALE: levels.
+  uint32_t stale;
   // Exchanges that the projection onto the bounds of the joints took, 0 to 12.
   uint32_t pivots;
 } StratumStatus;
@@ -639,6 +682,52 @@ StratumResult stratum_follow_at_once(struct StratumState *state);
 
 // Clears a latched fault; the observer starts anew, the references stay.
 StratumResult stratum_reset(struct StratumState *state);
+
+// A level that is not there comes, in duration_s (0.05 to 60): the one of the settings with this
+// number, at this place among those that are there (1: above all). Its reference is a hold until
+// one is set. Between two steps; what cannot be changes nothing.
+StratumResult stratum_level_add(const struct StratumController *controller,
+                                struct StratumState *state,
+                                const struct StratumSettings *settings,
+                                uint32_t level,
+                                uint32_t place,
+                                double duration_s);
+
+// A level that is there goes, in duration_s. The last one may, too: then all of the arm is
+// compliant.
+StratumResult stratum_level_remove(const struct StratumController *controller,
+                                   struct StratumState *state,
+                                   uint32_t level,
+                                   double duration_s);
+
+// A level that is there gets other gains, in duration_s.
+StratumResult stratum_level_gains(const struct StratumController *controller,
+                                  struct StratumState *state,
+                                  uint32_t level,
+                                  const double stiffness[9],
+                                  const double damping[9],
+                                  double duration_s);
+
+// The levels that are there get another order: their numbers, highest priority first, count of
+// them. A level that goes up goes and comes back, each in duration_s.
+StratumResult stratum_level_order(const struct StratumController *controller,
+                                  struct StratumState *state,
+                                  const uint32_t *levels,
+                                  uint32_t count,
+                                  double duration_s);
+
+// The null space gets the stiffness and damping of the settings, in duration_s. A damping matrix is
+// searched through for its fastest mode, which takes far longer than a cycle.
+StratumResult stratum_null_space(const struct StratumController *controller,
+                                 struct StratumState *state,
+                                 const struct StratumSettings *settings,
+                                 double duration_s);
+
+// Sets how old the reference of a level is, s, 0 unless said otherwise; what that means the
+// settings say.
+StratumResult stratum_reference_age(struct StratumState *state,
+                                    uint32_t level,
+                                    double age_s);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -2,9 +2,9 @@
 
 use core::ffi::CStr;
 
-use controller_core::ConfigError;
 use controller_core::arm::ArmError;
 use controller_core::fault::FaultKind;
+use controller_core::{ChangeError, ConfigError};
 
 use crate::constants::{Constant, c, constants};
 
@@ -33,14 +33,24 @@ constants! { ERRORS: StratumResult {
          numbers other than 0";
     STRATUM_ERROR_WRONG_TARGET = 12,
         "a position for a level that tracks an orientation, or the other way round";
+    STRATUM_ERROR_CHANGE_DURATION = 13, "the duration of a change is outside 0.05 to 60 s";
+    STRATUM_ERROR_LEVEL_TAKEN = 14, "the level is there, or another task is still leaving it";
+    STRATUM_ERROR_LEVEL_EMPTY = 15, "the level is not there";
+    STRATUM_ERROR_PLACE = 16, "no such place among the levels; places count from 1";
+    STRATUM_ERROR_ROOM = 17, "the levels would have more rows together than there is room for";
+    STRATUM_ERROR_ORDER = 18, "an order that has not each level that is there once";
+    STRATUM_ERROR_EXACT_LAW = 19, "levels of the exact law are neither added, removed nor reordered";
+    STRATUM_ERROR_NULL_SPACE_KIND = 20,
+        "a null space whose damping or posture is of another kind than the controller's";
 }}
 
 constants! { CONFIG_ERRORS: StratumResult {
     STRATUM_CONFIG_OTHER = 128, "settings: refused, see stratum_settings_text";
     STRATUM_CONFIG_LEVELS = 129, "settings: level_count is not 1 to 7";
     STRATUM_CONFIG_CHOICE = 130,
-        "settings: a choice (task, axes, damping, posture) that does not exist";
-    STRATUM_CONFIG_ROWS = 131, "settings: the levels have more than 7 rows together";
+        "settings: a choice (task, axes, absent, stale, damping, posture) that does not exist";
+    STRATUM_CONFIG_ROWS = 131,
+        "settings: the levels have more than 12 rows together, or with the exact law more than 7";
     STRATUM_CONFIG_NO_AXIS = 132, "settings: a level has no axis";
     STRATUM_CONFIG_POINT_LINK = 133, "settings: a level is on a link that does not exist";
     STRATUM_CONFIG_POINT_OFFSET = 134, "settings: a point offset is not finite or too far away";
@@ -58,6 +68,7 @@ constants! { CONFIG_ERRORS: StratumResult {
         "settings: the frame of a level has axes that are not orthogonal and of length 1";
     STRATUM_CONFIG_LEVEL_LIMITS = 144, "settings: a limit of a level is outside its range";
     STRATUM_CONFIG_POSTURE = 145, "settings: an integrated posture needs the exact law";
+    STRATUM_CONFIG_STALE_AGE = 146, "settings: the age of a stale reference is outside its range";
     STRATUM_CONFIG_ARM_NON_FINITE = 160, "arm or tool: a parameter is not finite";
     STRATUM_CONFIG_ARM_NOT_POSITIVE = 161, "arm: a parameter that must be above 0 is not";
     STRATUM_CONFIG_ARM_INERTIA = 162, "arm or tool: an inertia that no body can have";
@@ -126,6 +137,11 @@ pub(crate) fn text(code: StratumResult) -> &'static CStr {
     row(code).map_or(c"no such code", |row| row.text)
 }
 
+/// What a function answers by its result.
+pub(crate) fn code(result: Result<(), StratumResult>) -> StratumResult {
+    result.err().unwrap_or(STRATUM_OK)
+}
+
 pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
     match error {
         ConfigError::Arm(ArmError::NonFinite { .. }) => STRATUM_CONFIG_ARM_NON_FINITE,
@@ -134,7 +150,7 @@ pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
         ConfigError::Arm(ArmError::OutOfRange { .. }) => STRATUM_CONFIG_ARM_RANGE,
         ConfigError::FrameRotation { .. } => STRATUM_CONFIG_FRAME_ROTATION,
         ConfigError::Levels { .. } => STRATUM_CONFIG_LEVELS,
-        ConfigError::Rows { .. } => STRATUM_CONFIG_ROWS,
+        ConfigError::Rows { .. } | ConfigError::ExactRows { .. } => STRATUM_CONFIG_ROWS,
         ConfigError::PointOffset { .. } => STRATUM_CONFIG_POINT_OFFSET,
         ConfigError::GainValue { .. } => STRATUM_CONFIG_GAIN_VALUE,
         ConfigError::GainSymmetry { .. } => STRATUM_CONFIG_GAIN_SYMMETRY,
@@ -146,6 +162,23 @@ pub(crate) fn of_config(error: &ConfigError) -> StratumResult {
         ConfigError::Damping { .. } => STRATUM_CONFIG_DAMPING,
         ConfigError::LevelLimits { .. } => STRATUM_CONFIG_LEVEL_LIMITS,
         ConfigError::IntegratedPosture => STRATUM_CONFIG_POSTURE,
+        ConfigError::StaleAge { .. } => STRATUM_CONFIG_STALE_AGE,
+        _ => STRATUM_CONFIG_OTHER,
+    }
+}
+
+pub(crate) fn of_change(error: &ChangeError) -> StratumResult {
+    match error {
+        ChangeError::Config(error) => of_config(error),
+        ChangeError::Duration { .. } => STRATUM_ERROR_CHANGE_DURATION,
+        ChangeError::Slot { .. } => STRATUM_ERROR_LEVEL,
+        ChangeError::SlotTaken { .. } => STRATUM_ERROR_LEVEL_TAKEN,
+        ChangeError::SlotEmpty { .. } => STRATUM_ERROR_LEVEL_EMPTY,
+        ChangeError::Place { .. } => STRATUM_ERROR_PLACE,
+        ChangeError::Rows { .. } => STRATUM_ERROR_ROOM,
+        ChangeError::Order { .. } => STRATUM_ERROR_ORDER,
+        ChangeError::ExactLaw => STRATUM_ERROR_EXACT_LAW,
+        ChangeError::DampingKind | ChangeError::Posture => STRATUM_ERROR_NULL_SPACE_KIND,
         _ => STRATUM_CONFIG_OTHER,
     }
 }

@@ -98,6 +98,11 @@ choices! {
         STRATUM_POSTURE_INTEGRAL_UNCOUPLED = 2,
             "the integral of the task motion, without coupling";
     }
+    /// What a level does that came to rest because its reference is too old.
+    STALE_KINDS: StratumStaleKind {
+        STRATUM_STALE_HOLD = 0, "it stays";
+        STRATUM_STALE_RELEASE = 1, "it goes until there is a fresh one";
+    }
     /// What a cycle is part of; a fault is latched from STRATUM_MODE_BRAKING on.
     MODES: StratumMode {
         STRATUM_MODE_RUNNING = 0, "the law moves the arm";

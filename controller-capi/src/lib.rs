@@ -33,10 +33,12 @@ mod storage;
 mod status;
 
 mod arm;
+mod changes;
 mod reference;
 mod settings;
 
 pub use arm::*;
+pub use changes::*;
 pub use codes::*;
 pub use constants::*;
 pub use reference::{STRATUM_REFERENCE_SIZE, StratumReference};
@@ -46,11 +48,9 @@ pub use status::*;
 pub use storage::*;
 
 use border::Held;
+use codes::code;
+use reference::index;
 use scalar::finite;
-
-fn code(result: Result<(), StratumResult>) -> StratumResult {
-    result.err().unwrap_or(STRATUM_OK)
-}
 
 const VERSION: &CStr =
     match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
@@ -235,7 +235,7 @@ fn posture(
 impl Held {
     /// References that rest in the posture `q`.
     fn rest(&mut self, controller: &Controller<Scalar>, q: &JointVector<Scalar>) {
-        self.reference = controller.rest_reference(q);
+        self.reference = controller.rest_reference_of(&self.state, q);
         self.kinds = [STRATUM_TARGET_HOLD; STRATUM_LEVELS];
         for (kind, target) in self.kinds.iter_mut().zip(self.reference.targets()) {
             *kind = reference::kind(target);
@@ -288,11 +288,6 @@ pub unsafe extern "C" fn stratum_reference_set(
         *place = target;
         Ok(())
     }))
-}
-
-/// Level 1 is entry 0.
-fn index(level: u32) -> Option<usize> {
-    usize::try_from(level).ok()?.checked_sub(1)
 }
 
 /// The reference of a level as it is set: after stratum_state_init where the level
@@ -398,6 +393,8 @@ pub unsafe extern "C" fn stratum_status(
             at_greatest,
             unresolved,
             stuck,
+            changing,
+            stale,
             pivots,
         } = held.step.status;
         let mut answer = StratumStatus {
@@ -414,6 +411,8 @@ pub unsafe extern "C" fn stratum_status(
             at_greatest: u32::from(at_greatest.0),
             unresolved: u32::from(unresolved),
             stuck: u32::from(stuck.0),
+            changing: u32::from(changing.0),
+            stale: u32::from(stale.0),
             pivots: u32::from(pivots),
             ..StratumStatus::default()
         };

@@ -97,6 +97,11 @@ impl From<&Target<Scalar>> for StratumReference {
     }
 }
 
+/// Level 1 is entry 0.
+pub(crate) fn index(level: u32) -> Option<usize> {
+    usize::try_from(level).ok()?.checked_sub(1)
+}
+
 /// The kind of a target.
 pub(crate) fn kind(target: &Target<Scalar>) -> StratumTargetKind {
     match target {

@@ -12,7 +12,7 @@ use controller_core::gain::diagonal;
 use controller_core::joint::DOF;
 use controller_core::law::null_space::{NullDamping, Posture};
 use controller_core::ranges::{DEAD_CYCLES_MAX, MAX_LEVELS};
-use controller_core::task::LevelLimits;
+use controller_core::task::{AfterStale, LevelLimits, Stale};
 use controller_core::{
     Axes, ConfigError, Controller, ControllerConfig, Link, LinkFrame, LinkPoint, MakeController,
     NullSpace, Task, TaskGains, TaskSet,
@@ -23,13 +23,13 @@ use crate::codes::{self, StratumResult};
 use crate::constants::{
     STRATUM_AXIS_X, STRATUM_AXIS_Y, STRATUM_AXIS_Z, STRATUM_DAMPING_INERTIA, STRATUM_DAMPING_JOINT,
     STRATUM_POSTURE_CONSTANT, STRATUM_POSTURE_INTEGRAL_COUPLED, STRATUM_POSTURE_INTEGRAL_UNCOUPLED,
-    STRATUM_TASK_ORIENTATION, STRATUM_TASK_POSITION, StratumAxes, StratumDampingKind,
-    StratumPostureKind, StratumTaskKind,
+    STRATUM_STALE_HOLD, STRATUM_STALE_RELEASE, STRATUM_TASK_ORIENTATION, STRATUM_TASK_POSITION,
+    StratumAxes, StratumDampingKind, StratumPostureKind, StratumStaleKind, StratumTaskKind,
 };
 use crate::scalar::Scalar;
 
 /// The version of the interface: numbers, structs and functions of this header.
-pub const STRATUM_ABI_VERSION: u32 = 5;
+pub const STRATUM_ABI_VERSION: u32 = 6;
 /// Most levels.
 pub const STRATUM_LEVELS: usize = 7;
 /// In the place of a link: what is on the tool, or without one on the flange.
@@ -87,14 +87,20 @@ pub struct StratumLevel {
     pub rotation: [[f64; 3]; 3],
     /// Controlled axes: sum of STRATUM_AXIS_X, _Y and _Z.
     pub axes: StratumAxes,
-    /// Always 0: completes the struct to whole words.
-    pub reserved: u32,
+    /// 1: the level is not there until stratum_level_add; else 0.
+    pub absent: u32,
     /// Stiffness of the error, 1/s2: acts on acceleration.
     pub stiffness: [[f64; 3]; 3],
     /// Damping of the error, 1/s.
     pub damping: [[f64; 3]; 3],
     /// What happens near singularities and far from the target.
     pub limits: StratumLevelLimits,
+    /// Age from which on the level's reference is too old, s: it comes to rest then. 0: never.
+    pub stale_after_s: f64,
+    /// STRATUM_STALE_HOLD or STRATUM_STALE_RELEASE: what follows once it rests.
+    pub stale: StratumStaleKind,
+    /// Always 0: completes the struct to whole words.
+    pub reserved: u32,
 }
 
 /// Everything a controller is made of.
@@ -103,7 +109,8 @@ pub struct StratumLevel {
 pub struct StratumSettings {
     /// Set by stratum_settings_default; not to be changed.
     pub abi: u32,
-    /// Levels in use, 1 to 7; together at most 7 axes.
+    /// Levels in use, with those that are absent, 1 to 7; together at most 12 axes, with the exact
+    /// law 7.
     pub level_count: u32,
     /// The arm with its limits, mounted as it is.
     pub arm: StratumArm,
@@ -132,7 +139,7 @@ pub struct StratumSettings {
 }
 
 /// sizeof(StratumSettings).
-pub const STRATUM_SETTINGS_SIZE: usize = 5296;
+pub const STRATUM_SETTINGS_SIZE: usize = 5408;
 const _: () = assert!(size_of::<StratumSettings>() == STRATUM_SETTINGS_SIZE);
 const _: () = assert!(STRATUM_JOINTS == DOF && STRATUM_LEVELS == MAX_LEVELS);
 
@@ -233,8 +240,23 @@ impl StratumLevel {
         };
         Ok(Task {
             limits: self.limits.limits(),
+            stale: self.stale(level)?,
             ..task
         })
+    }
+
+    fn stale(&self, level: usize) -> Result<Option<Stale>, Refusal> {
+        let then = match self.stale {
+            STRATUM_STALE_HOLD => AfterStale::Hold,
+            STRATUM_STALE_RELEASE => AfterStale::Release,
+            value => {
+                let code = codes::STRATUM_CONFIG_CHOICE;
+                return Err(number(level, code, "stale", value, [0, 1]));
+            }
+        };
+        let age_s = self.stale_after_s;
+        // What is not a number is refused further on.
+        Ok((age_s != 0.0).then_some(Stale { age_s, then }))
     }
 }
 
@@ -254,10 +276,13 @@ impl StratumSettings {
             offset: [0.0; 3],
             rotation: Pose::IDENTITY.rotation,
             axes: STRATUM_AXIS_X + STRATUM_AXIS_Y + STRATUM_AXIS_Z,
-            reserved: 0,
+            absent: 0,
             stiffness: diagonal([400.0; 3]),
             damping: diagonal([40.0; 3]),
             limits: StratumLevelLimits::BY_PLACE,
+            stale_after_s: 0.0,
+            stale: STRATUM_STALE_HOLD,
+            reserved: 0,
         };
         Self {
             abi: STRATUM_ABI_VERSION,
@@ -311,20 +336,7 @@ impl StratumSettings {
     fn config(&self) -> Result<ControllerConfig, Refusal> {
         Ok(ControllerConfig {
             tasks: self.tasks()?,
-            null_space: NullSpace {
-                stiffness: self.null_stiffness,
-                damping: match self.damping {
-                    STRATUM_DAMPING_JOINT => NullDamping::Joint(self.null_damping),
-                    STRATUM_DAMPING_INERTIA => NullDamping::Inertia(self.null_damping_rate),
-                    value => return Err(choice("damping", value, 1)),
-                },
-                posture: match self.posture {
-                    STRATUM_POSTURE_CONSTANT => Posture::Constant,
-                    STRATUM_POSTURE_INTEGRAL_COUPLED => Posture::IntegralCoupled,
-                    STRATUM_POSTURE_INTEGRAL_UNCOUPLED => Posture::IntegralUncoupled,
-                    value => return Err(choice("posture", value, 2)),
-                },
-            },
+            null_space: self.null_space()?,
             observer_gain: self.observer_gain,
             cycle_s: self.cycle_s,
             dead_cycles: u8::try_from(self.dead_cycles).map_err(|_| {
@@ -332,6 +344,24 @@ impl StratumSettings {
                 let code = codes::STRATUM_CONFIG_DEAD_CYCLES;
                 number(0, code, "dead_cycles", self.dead_cycles, allowed)
             })?,
+        })
+    }
+
+    #[inline(never)]
+    pub(crate) fn null_space(&self) -> Result<NullSpace, Refusal> {
+        Ok(NullSpace {
+            stiffness: self.null_stiffness,
+            damping: match self.damping {
+                STRATUM_DAMPING_JOINT => NullDamping::Joint(self.null_damping),
+                STRATUM_DAMPING_INERTIA => NullDamping::Inertia(self.null_damping_rate),
+                value => return Err(choice("damping", value, 1)),
+            },
+            posture: match self.posture {
+                STRATUM_POSTURE_CONSTANT => Posture::Constant,
+                STRATUM_POSTURE_INTEGRAL_COUPLED => Posture::IntegralCoupled,
+                STRATUM_POSTURE_INTEGRAL_UNCOUPLED => Posture::IntegralUncoupled,
+                value => return Err(choice("posture", value, 2)),
+            },
         })
     }
 
@@ -353,7 +383,32 @@ impl StratumSettings {
         for (number, (task, level)) in (1..).zip(used.iter_mut().zip(&self.levels)) {
             *task = level.task(number, &self.tool_pose())?;
         }
-        Ok(TaskSet::new(used)?)
+        let mut set = TaskSet::new(used)?;
+        for (slot, level) in self.levels.iter().enumerate().take(count) {
+            match level.absent {
+                0 => {}
+                1 => set = set.without(slot),
+                value => {
+                    let code = codes::STRATUM_CONFIG_CHOICE;
+                    return Err(number(slot + 1, code, "absent", value, [0, 1]));
+                }
+            }
+        }
+        Ok(set)
+    }
+
+    /// The task of a level, counted from 0, with its tool.
+    pub(crate) fn task(&self, slot: usize) -> Result<Task, Refusal> {
+        match self.levels.get(slot) {
+            Some(level) => level.task(slot + 1, &self.tool_pose()),
+            None => Err(number(
+                0,
+                codes::STRATUM_ERROR_LEVEL,
+                "level",
+                slot as u32 + 1,
+                [1, 7],
+            )),
+        }
     }
 }
 

@@ -48,10 +48,14 @@ pub struct StratumStatus {
     pub unresolved: u32,
     /// STRATUM_LIMIT_STUCK: levels.
     pub stuck: u32,
+    /// STRATUM_LIMIT_CHANGING: levels; bit 7 is the null space.
+    pub changing: u32,
+    /// STRATUM_LIMIT_STALE: levels.
+    pub stale: u32,
     /// Exchanges that the projection onto the bounds of the joints took, 0 to 12.
     pub pivots: u32,
 }
 
 /// sizeof(StratumStatus).
-pub const STRATUM_STATUS_SIZE: usize = 88;
+pub const STRATUM_STATUS_SIZE: usize = 96;
 const _: () = assert!(size_of::<StratumStatus>() == STRATUM_STATUS_SIZE);

@@ -1,9 +1,9 @@
 //! Opaque storage of the caller, of constant size whatever the library computes in.
 
 /// Storage of a controller in words of 8 bytes.
-pub const STRATUM_CONTROLLER_WORDS: usize = 900;
+pub const STRATUM_CONTROLLER_WORDS: usize = 1100;
 /// Storage of a state in words of 8 bytes.
-pub const STRATUM_STATE_WORDS: usize = 1650;
+pub const STRATUM_STATE_WORDS: usize = 3000;
 /// sizeof(StratumController).
 pub const STRATUM_CONTROLLER_SIZE: usize = STRATUM_CONTROLLER_WORDS * 8;
 /// Alignment of a StratumController.

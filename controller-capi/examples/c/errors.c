@@ -281,6 +281,78 @@ static void steps(void) {
     }
 }
 
+/* Changes that cannot be, of a controller with one level and a second one that is absent. */
+static void changes(void) {
+    static const uint32_t both[2] = {2, 1}, twice[2] = {1, 1};
+    double stiffness[9] = {100.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 100.0};
+    double damping[9] = {20.0, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 0.0, 20.0};
+    fresh();
+    settings.level_count = 2;
+    settings.levels[1].axes = STRATUM_AXIS_X;
+    settings.levels[1].absent = 1;
+    EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
+    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, q));
+
+    EXPECT(STRATUM_ERROR_NULL, stratum_level_add(0, &state, &settings, 2, 1, 0.5));
+    EXPECT(STRATUM_ERROR_NULL, stratum_level_add(&other, 0, &settings, 2, 1, 0.5));
+    EXPECT(STRATUM_ERROR_NULL, stratum_level_add(&other, &state, 0, 2, 1, 0.5));
+    EXPECT(STRATUM_ERROR_MISALIGNED,
+           stratum_level_add(&other, &state, ODD(StratumSettings), 2, 1, 0.5));
+    EXPECT(STRATUM_ERROR_UNINITIALISED,
+           stratum_level_add(&other, &blank_state, &settings, 2, 1, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_level_add(&other, &state, &settings, 0, 1, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_level_add(&other, &state, &settings, 3, 1, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_level_add(&other, &state, &settings, 8, 1, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL_TAKEN, stratum_level_add(&other, &state, &settings, 1, 1, 0.5));
+    EXPECT(STRATUM_ERROR_PLACE, stratum_level_add(&other, &state, &settings, 2, 0, 0.5));
+    EXPECT(STRATUM_ERROR_PLACE, stratum_level_add(&other, &state, &settings, 2, 3, 0.5));
+    EXPECT(STRATUM_ERROR_CHANGE_DURATION,
+           stratum_level_add(&other, &state, &settings, 2, 1, 0.01));
+    EXPECT(STRATUM_ERROR_CHANGE_DURATION,
+           stratum_level_remove(&other, &state, 1, bad[0]));
+    settings.levels[1].axes = STRATUM_AXIS_X + STRATUM_AXIS_Y;
+    EXPECT(STRATUM_ERROR_ROOM, stratum_level_add(&other, &state, &settings, 2, 1, 0.5));
+    settings.levels[1].stiffness[0][0] = -1.0;
+    EXPECT(STRATUM_CONFIG_GAIN_DEFINITE, stratum_level_add(&other, &state, &settings, 2, 1, 0.5));
+
+    EXPECT(STRATUM_ERROR_LEVEL_EMPTY, stratum_level_remove(&other, &state, 2, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_level_remove(&other, &state, 0, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL_EMPTY,
+           stratum_level_gains(&other, &state, 2, stiffness, damping, 0.5));
+    EXPECT(STRATUM_ERROR_NULL, stratum_level_gains(&other, &state, 1, 0, damping, 0.5));
+    EXPECT(STRATUM_OK, stratum_level_gains(&other, &state, 1, stiffness, damping, 0.5));
+    stiffness[1] = 1.0;
+    EXPECT(STRATUM_CONFIG_GAIN_SYMMETRY,
+           stratum_level_gains(&other, &state, 1, stiffness, damping, 0.5));
+    EXPECT(STRATUM_ERROR_ORDER, stratum_level_order(&other, &state, both, 2, 0.5));
+    EXPECT(STRATUM_ERROR_ORDER, stratum_level_order(&other, &state, twice, 2, 0.5));
+    EXPECT(STRATUM_ERROR_ORDER, stratum_level_order(&other, &state, both, 9, 0.5));
+    EXPECT(STRATUM_ERROR_NULL, stratum_level_order(&other, &state, 0, 1, 0.5));
+    settings.damping = STRATUM_DAMPING_INERTIA;
+    EXPECT(STRATUM_ERROR_NULL_SPACE_KIND, stratum_null_space(&other, &state, &settings, 0.5));
+    settings.damping = STRATUM_DAMPING_JOINT;
+    settings.null_damping[6][6] = 1.0;
+    EXPECT(STRATUM_CONFIG_DAMPING, stratum_null_space(&other, &state, &settings, 0.5));
+    EXPECT(STRATUM_ERROR_LEVEL, stratum_reference_age(&state, 3, 1.0));
+    EXPECT(STRATUM_ERROR_NON_FINITE, stratum_reference_age(&state, 1, bad[0]));
+    EXPECT(STRATUM_OK, stratum_reference_age(&state, 1, 1.0));
+
+    fresh();
+    settings.level_count = 2;
+    settings.levels[1].axes = STRATUM_AXIS_X;
+    settings.levels[1].absent = 1;
+    EXPECT(STRATUM_OK, stratum_level_add(&other, &state, &settings, 2, 1, 0.5));
+    EXPECT(STRATUM_OK, stratum_step(&other, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_status(&state, &status));
+    CHECK(status.changing == 3 && status.stale == 0);
+    settings.levels[1].absent = 0;
+    EXPECT(STRATUM_OK, stratum_controller_init_exact(&other, &settings));
+    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, q));
+    EXPECT(STRATUM_ERROR_EXACT_LAW, stratum_level_remove(&other, &state, 2, 0.5));
+    EXPECT(STRATUM_ERROR_EXACT_LAW, stratum_level_order(&other, &state, both, 2, 0.5));
+    fresh();
+}
+
 static void configurations(void) {
     fresh();
     REFUSED(STRATUM_ERROR_ABI, settings.abi = 0);
@@ -291,7 +363,10 @@ static void configurations(void) {
     REFUSED(STRATUM_CONFIG_CHOICE, settings.damping = 0xffffffffu);
     REFUSED(STRATUM_CONFIG_CHOICE, settings.posture = 3);
     REFUSED(STRATUM_CONFIG_LEVELS, settings.level_count = 0);
-    REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 3);
+    REFUSED(STRATUM_CONFIG_ROWS, settings.level_count = 5);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].absent = 2);
+    REFUSED(STRATUM_CONFIG_CHOICE, settings.levels[0].stale = 2);
+    REFUSED(STRATUM_CONFIG_STALE_AGE, settings.levels[0].stale_after_s = bad[0]);
     REFUSED(STRATUM_CONFIG_NO_AXIS, settings.level_count = 2; settings.levels[1].axes = 0);
     REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = 0);
     REFUSED(STRATUM_CONFIG_POINT_LINK, settings.levels[0].link = STRATUM_ON_TOOL + 1);
@@ -326,6 +401,7 @@ int main(void) {
     arguments();
     references();
     steps();
+    changes();
     configurations();
     CHECK(stratum_abi_version() == STRATUM_ABI_VERSION);
     CHECK(stratum_error_name(-1)[0] == 'u' && stratum_error_text(12345)[0] == 'n');

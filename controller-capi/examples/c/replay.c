@@ -1,5 +1,5 @@
-/* 5,000 cycles of three levels from a sequence of integers, with moving positions and
- * orientations, a hold, a fault and a reset. Prints the bits of some torques and a hash of all. The same
+/* 5,000 cycles of up to four levels from a sequence of integers, with moving positions and
+ * orientations, a hold, a fault and a reset, levels that come, go and change places, other gains. Prints the bits of some torques and a hash of all. The same
  * lines come from `cargo run -p controller-capi --example replay`, which calls
  * the core in Rust. */
 #include "board.h"
@@ -52,11 +52,30 @@ static void print_number(uint64_t number, uint32_t base, int digits) {
     board_print(text + end);
 }
 
+static const uint32_t order[4] = {3, 1, 4, 2};
+
 static void must(StratumResult result) {
     if (result == STRATUM_OK) return;
     board_print(stratum_error_text(result));
     board_print("\n");
     board_exit(1);
+}
+
+/* Begins what changes at a cycle. */
+static void change(uint32_t cycle) {
+    static const double stiffness[9] = {100.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 100.0};
+    static const double damping[9] = {20.0, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 0.0, 20.0};
+    if (cycle == 600) must(stratum_level_add(&controller, &state, &settings, 4, 2, 0.5));
+    if (cycle == 700) must(stratum_level_gains(&controller, &state, 1, stiffness, damping, 0.5));
+    if (cycle == 1000) must(stratum_level_order(&controller, &state, order, 4, 0.5));
+    if (cycle == 1700) must(stratum_level_remove(&controller, &state, 1, 0.5));
+    if (cycle == 2600) must(stratum_level_add(&controller, &state, &settings, 1, 1, 0.5));
+    if (cycle == 2800) must(stratum_level_remove(&controller, &state, 4, 1.0));
+    if (cycle == 3600) {
+        for (int i = 0; i < 7; i++) settings.null_stiffness[i][i] *= 0.5;
+        must(stratum_null_space(&controller, &state, &settings, 0.5));
+    }
+    if (cycle >= 4000) must(stratum_reference_age(&state, 2, (cycle - 4000) / 512.0));
 }
 
 int main(void) {
@@ -67,12 +86,18 @@ int main(void) {
     uint32_t saturated = 0;
 
     must(stratum_settings_default(STRATUM_ABI_VERSION, &settings));
-    settings.level_count = 3;
+    settings.level_count = 4;
     settings.levels[1].link = 3; /* the elbow */
     settings.levels[1].offset[2] = 0.0;
     settings.levels[1].axes = STRATUM_AXIS_X | STRATUM_AXIS_Y;
+    settings.levels[1].stale_after_s = 0.25;
+    settings.levels[1].stale = STRATUM_STALE_RELEASE;
     settings.levels[2].task = STRATUM_TASK_ORIENTATION; /* of the flange */
     settings.levels[2].axes = STRATUM_AXIS_Z;
+    settings.levels[3].link = 5; /* the wrist */
+    settings.levels[3].axes = STRATUM_AXIS_Z;
+    settings.levels[3].offset[2] = 0.0;
+    settings.levels[3].absent = 1;
     must(stratum_controller_init(&controller, &settings));
     measure(0, q, dq);
     must(stratum_state_init(&state, &controller, q));
@@ -93,6 +118,7 @@ int main(void) {
         must(stratum_reference_set(&state, 3, &reference));
         must(stratum_posture_set(&state, centre));
         if (cycle == 3010) must(stratum_reset(&state));
+        change(cycle);
         double interval_s = cycle == 3000 ? -1.0 : 1.0 / 512.0;
         hash_bits((uint64_t)stratum_step(&controller, &state, q, dq, interval_s, torque));
         must(stratum_residual(&state, residual));

@@ -14,15 +14,18 @@ type Case = (fn(&mut StratumSettings), StratumResult, &'static str);
 #[test]
 fn every_refusal_of_settings_names_thing_value_and_allowed() {
     #[rustfmt::skip]
-    let cases: [Case; 32] = [
-        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 5"),
+    let cases: [Case; 35] = [
+        (|s| s.abi = 1, STRATUM_ERROR_ABI, "settings.abi is 1; this library has 6"),
         (|s| s.level_count = 8, STRATUM_CONFIG_LEVELS, "level_count is 8; allowed 1 to 7"),
         (|s| s.level_count = 0, STRATUM_CONFIG_LEVELS, "level_count is 0; allowed 1 to 7"),
         (|s| s.levels[0].task = 2, STRATUM_CONFIG_CHOICE, "level 1: task is 2; allowed 0 to 1"),
         (|s| s.levels[0].axes = 9, STRATUM_CONFIG_CHOICE, "level 1: axes is 9; allowed 1 to 7"),
         (|s| s.damping = 2, STRATUM_CONFIG_CHOICE, "damping is 2; allowed 0 to 1"),
         (|s| s.posture = u32::MAX, STRATUM_CONFIG_CHOICE, "posture is 4294967295; allowed 0 to 2"),
-        (|s| s.level_count = 3, STRATUM_CONFIG_ROWS, "9 rows together; allowed 1 to 7"),
+        (|s| s.level_count = 5, STRATUM_CONFIG_ROWS, "15 rows together; allowed 1 to 12"),
+        (|s| s.levels[0].absent = 2, STRATUM_CONFIG_CHOICE, "level 1: absent is 2; allowed 0 to 1"),
+        (|s| s.levels[0].stale = 2, STRATUM_CONFIG_CHOICE, "level 1: stale is 2; allowed 0 to 1"),
+        (|s| s.levels[0].stale_after_s = -1.0, STRATUM_CONFIG_STALE_AGE, "level 1: age -1 s from which on a reference is stale; allowed 0.001 to 3600"),
         (|s| { s.level_count = 2; s.levels[1].axes = 0; }, STRATUM_CONFIG_NO_AXIS, "level 2: axes is 0; allowed 1 to 7"),
         (|s| s.levels[0].link = 9, STRATUM_CONFIG_POINT_LINK, "level 1: link is 9; allowed 1 to 8"),
         (|s| { s.levels[0].task = 1; s.levels[0].link = 0; }, STRATUM_CONFIG_POINT_LINK, "level 1: link is 0; allowed 1 to 8"),
