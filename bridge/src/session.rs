@@ -393,7 +393,7 @@ impl<P: Protocol> Session<P> {
         let Some(controller) = &self.controller else {
             return;
         };
-        let rest = controller.rest_reference(&incoming.q);
+        let rest = controller.rest_reference_of(&self.state, &incoming.q);
         self.posture = incoming.q;
         self.state.reset();
         self.in_command = 0;
@@ -448,7 +448,10 @@ impl<P: Protocol> Session<P> {
         let now = self.first_command.map(|first| self.cycles_since(first));
         let t_s = now.map(|now| now as f64 * self.cycle_s);
         let wanted = match (self.phase, t_s) {
-            (Phase::Moving, Some(t_s)) => source.sample(t_s),
+            (Phase::Moving, Some(t_s)) => {
+                source.change(t_s, &mut |change| controller.begin(&mut self.state, change));
+                source.sample(t_s)
+            }
             _ => None,
         };
         if self.phase == Phase::Holding && self.link.is_broken() {

@@ -2,7 +2,7 @@
 //! behind `| head`, must not end a run, and least of all one that moves a robot.
 
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io::{self, BufRead, ErrorKind, Write};
 
 use crate::invalid::Invalid;
 
@@ -29,4 +29,31 @@ pub fn tell(line: impl Display) {
 pub fn show(text: impl Display) {
     // There is no better place to report that this failed.
     let _ = write!(io::stderr(), "{text}");
+}
+
+/// The next line, none at the end. Of a line that is too long only the beginning is kept,
+/// one letter more than `longest`; what is no text is replaced.
+///
+/// # Errors
+/// The input cannot be read.
+pub fn next_line(input: &mut impl BufRead, longest: usize) -> io::Result<Option<String>> {
+    let mut line = Vec::new();
+    let mut begun = false;
+    loop {
+        let bytes = match input.fill_buf() {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            bytes => bytes?,
+        };
+        let (read, end) = match bytes.iter().position(|&byte| byte == b'\n') {
+            Some(length) => (length, 1),
+            None => (bytes.len(), 0),
+        };
+        line.extend(bytes.iter().take(read.min(longest + 1 - line.len())));
+        begun |= read + end > 0;
+        let over = read + end == 0;
+        input.consume(read + end);
+        if over || end > 0 {
+            return Ok(begun.then(|| String::from_utf8_lossy(&line).into_owned()));
+        }
+    }
 }

@@ -7,12 +7,14 @@
 //! - [`run`]: the socket loop of an LWR: one datagram in, one out; [`peer`]: whom it answers;
 //! - [`mod@fci`]: a Franka robot: its sockets, its model;
 //! - [`recorder`]: every cycle to a file, without blocking the loop;
+//! - [`changes`]: changes of tasks and gains, over UDP or typed;
 //! - [`stream`]: references that arrive over UDP;
 //! - [`summary`]: what a run was;
 //! - [`doctor`]: can this PC hold the cycle?
 //!
 //! docs/fri.md leads from a fresh PC to a moving robot.
 
+pub mod changes;
 pub mod cli;
 pub mod doctor;
 pub mod fci;

@@ -1,7 +1,7 @@
 //! References that arrive over UDP, for a planner in another process.
 //!
 //! One datagram is one reference, as text: numbers separated by spaces or commas, for
-//! each level in priority order
+//! each level in the order of the scenario
 //!
 //! - of a position nine: x y z \[m\], velocity \[m/s\], acceleration \[m/s2\];
 //! - of an orientation ten: a quaternion w x y z, angular velocity \[rad/s\], angular
@@ -10,6 +10,8 @@
 //! in base-plate axes. Levels may be left out at the end: then they keep their last
 //! reference. Any other count of numbers, or a number out of range, and the datagram is
 //! refused as a whole.
+//!
+//! A datagram that begins with a letter is a [change](crate::changes) of tasks or gains.
 //!
 //! One sender is obeyed: the one that is named, or else the first whose datagram is a
 //! reference. Those of others are counted and have no effect.
@@ -29,6 +31,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
+use crate::changes::Lines;
 use bridge::source::ReferenceSource;
 use cell::scenario::EquippedArm;
 use cell::terminal::tell;
@@ -98,7 +101,7 @@ pub struct Stream {
 impl Stream {
     /// Listens at `address` for references of levels of `arm` that have these `tasks`, from the
     /// address `from` alone or, without one, from the first that sends one; after
-    /// `timeout` without one the arm is held.
+    /// `timeout` without one the arm is held. `changes` takes those of tasks.
     ///
     /// # Errors
     /// The address cannot be bound.
@@ -108,6 +111,7 @@ impl Stream {
         tasks: &TaskSet,
         arm: &EquippedArm,
         timeout: Duration,
+        changes: Option<Lines>,
     ) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         let (sender, queue) = sync_channel(QUEUE);
@@ -118,7 +122,7 @@ impl Stream {
         }
         std::thread::Builder::new()
             .name("references".into())
-            .spawn(move || receive(&socket, (&tasks, &arm), &sender, &tally))?;
+            .spawn(move || receive(&socket, (&tasks, &arm), &sender, &tally, changes.as_ref()))?;
         Ok(stream)
     }
 
@@ -191,6 +195,7 @@ fn receive(
     (tasks, arm): (&TaskSet, &EquippedArm),
     queue: &SyncSender<Setpoint>,
     tally: &Tally,
+    changes: Option<&Lines>,
 ) {
     let mut bytes = vec![0; LONGEST];
     let count = |counter: &AtomicU64| counter.fetch_add(1, Ordering::Relaxed);
@@ -212,6 +217,15 @@ fn receive(
         let text = bytes
             .get(..length)
             .and_then(|bytes| std::str::from_utf8(bytes).ok());
+        if let (Some(changes), Some(line)) = (changes, text.filter(|text| Lines::is_change(text))) {
+            match changes.send(line) {
+                Ok(()) => {
+                    tally.sender.get_or_init(|| from);
+                }
+                Err(error) => note(count(&tally.unusable), &format_args!("{from}: {error}")),
+            }
+            continue;
+        }
         let setpoint = text
             .ok_or_else(|| "not text".to_string())
             .and_then(|text| Setpoint::parse(text, tasks, arm));

@@ -17,7 +17,8 @@ use controller_core::fault::FaultKind;
 use controller_core::joint::Vector3;
 use controller_core::task::orientation::{self, Quaternion};
 use controller_core::task::trajectory::Rotation;
-use controller_core::{Reference, Target, TaskSet};
+use controller_core::{Controller, Reference, Target, TaskSet};
+use firmware_host::changes;
 use firmware_host::peer::IN_A_ROW;
 use firmware_host::recorder;
 use firmware_host::run::{Endpoint, converse};
@@ -265,8 +266,9 @@ fn a_stream_of_nine_numbers_per_level_is_not_followed() {
         let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
         free.local_addr().expect("an address")
     };
-    let mut stream = Stream::listen(address, None, &tasks(&scenario), &scenario.arm(), NEVER)
-        .expect("a free port");
+    let tasks = tasks(&scenario);
+    let mut stream =
+        Stream::listen(address, None, &tasks, &scenario.arm(), NEVER, None).expect("a free port");
     let planner = UdpSocket::bind("127.0.0.1:0").expect("a port");
     planner.connect(address).expect("loopback");
     let wrong = "-0.5 0 0.5 0 0 0 0 0 0 ".repeat(2);
@@ -398,4 +400,35 @@ fn a_target_of_another_kind_is_a_fault_that_the_summary_names() {
     let clear = rows.iter().filter(|row| row.ends_with(",0,0,0")).count();
     assert!(faults > 0 && clear > 250, "{faults} {clear}");
     assert_eq!(faults + clear, rows.len());
+}
+
+/// A change beside references: the loop begins it, what is none is counted.
+#[test]
+fn a_datagram_with_words_changes_gains() {
+    let scenario = scenario();
+    let config = scenario.session_config(0, 1.0).expect("a valid scenario");
+    let controller = Controller::new(&config.arm, &config.controller).expect("valid");
+    let (lines, changes) = changes::channel(&scenario, &controller);
+    let address = {
+        let free = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        free.local_addr().expect("an address")
+    };
+    let tasks = tasks(&scenario);
+    let stream = Stream::listen(address, None, &tasks, &scenario.arm(), NEVER, Some(lines))
+        .expect("a free port");
+    let planner = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    planner.connect(address).expect("loopback");
+    for line in ["gains 1 100 20 in 0.2", "gains 1 -1 20", "grow 1"] {
+        planner.send(line.as_bytes()).expect("sent");
+    }
+    let deadline = Instant::now() + Duration::from_secs(20);
+    let mut begun = 0;
+    while (begun, stream.figures().unusable) != (1, 2) && Instant::now() < deadline {
+        changes.begin(&mut |_| {
+            begun += 1;
+            Ok(())
+        });
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!((begun, stream.figures().unusable), (1, 2));
 }

@@ -26,8 +26,8 @@ fn one_sender_is_obeyed_and_the_others_are_counted() {
             free.local_addr().expect("an address")
         };
         let local = |index: usize| planners[index].local_addr().expect("an address");
-        let mut stream =
-            Stream::listen(address, named.map(local), &tasks, &arm, NEVER).expect("a free port");
+        let mut stream = Stream::listen(address, named.map(local), &tasks, &arm, NEVER, None)
+            .expect("a free port");
         stream.start(&Reference::hold(1, [0.0; 7]));
         assert!(stream.sample(0.0).is_none(), "the motion begins");
         let deadline = Instant::now() + Duration::from_secs(20);

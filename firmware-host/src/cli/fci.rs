@@ -161,11 +161,12 @@ impl RunOptions {
             Some(path) => Some(Recorder::create(path).map_err(|error| unwritable(path, &error))?),
             None => None,
         };
+        let source = self.source(scenario, &config)?;
         let mut host = Host {
             session: Session::new(Fci::new(Version::V10), config.clone()),
             config,
             answer: Fci::EMPTY,
-            source: self.source(scenario, &tasks)?,
+            source,
             tasks,
             table: scenario.robot.table()?,
             tool: arm.tool(),

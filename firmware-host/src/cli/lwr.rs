@@ -28,7 +28,7 @@ impl RunOptions {
         let required = self.required_start(scenario);
         let wait = Duration::from_secs_f64(self.wait);
         let tasks = config.controller.tasks;
-        let mut source = self.source(scenario, &tasks)?;
+        let mut source = self.source(scenario, &config)?;
         let socket = UdpSocket::bind(listen).map_err(|error| {
             let allowed = format!("an address of this PC and a free port ({error})");
             Invalid::new("--listen", listen, allowed)

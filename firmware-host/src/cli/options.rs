@@ -12,14 +12,15 @@ use cell::arguments::values::{address, device, number, peer, processor, whole};
 use cell::invalid::Invalid;
 use cell::names::{Named as _, NullStiffness, RobotInterface};
 use cell::ranges::{DEAD_CYCLES, DURATION_S, Range, WAIT_S};
-use cell::scenario::{Scenario, ScenarioSource, built_in_names};
+use cell::scenario::{Events, Scenario, ScenarioSource, built_in_names};
 use cell::terminal::{print, tell};
 use clap::Args;
+use controller_core::Controller;
 use controller_core::joint::JointVector;
-use controller_core::{Controller, TaskSet};
 
-use super::source::Source;
+use super::source::{Motion, Source};
 use super::telling::{Flight, closing, place, prepare, unwritable};
+use crate::changes;
 use crate::stream::Stream;
 use crate::summary::Summary;
 
@@ -83,7 +84,7 @@ pub(super) struct RunOptions {
             in deg, {START_DEG}"))]
     require_start: Option<f64>,
     /// Take references from UDP datagrams at this address instead of the scenario: text, for
-    /// each level in priority order x y z, velocity, acceleration (9 numbers; m, s), or of an
+    /// each level in the order of the scenario x y z, velocity, acceleration (9 numbers; m, s), or of an
     /// orientation w x y z, angular velocity, angular acceleration (10 numbers; rad, s)
     #[arg(long, value_parser = address, value_name = "ADDR:PORT")]
     references: Option<SocketAddr>,
@@ -243,22 +244,39 @@ impl RunOptions {
     }
 
     /// The scenario, or the stream that was asked for.
-    pub(super) fn source(&self, scenario: &Scenario, tasks: &TaskSet) -> Result<Source, Invalid> {
-        let timeout = Duration::from_secs_f64(self.reference_timeout_ms / 1e3);
-        let Some(address) = self.references else {
-            return Ok(Source::Scenario(ScenarioSource::new(scenario)));
+    pub(super) fn source(
+        &self,
+        scenario: &Scenario,
+        config: &SessionConfig,
+    ) -> Result<Source, Invalid> {
+        let controller = (config.law)(&config.arm, &config.controller)
+            .map_err(|error| Invalid::line(error.named(&config.arm)).within(&scenario.name))?;
+        let (lines, changes) = changes::channel(scenario, &controller);
+        let motion = match self.references {
+            None => Motion::Scenario(ScenarioSource::new(scenario)),
+            Some(address) => {
+                let timeout = Duration::from_secs_f64(self.reference_timeout_ms / 1e3);
+                let (from, tasks) = (self.references_from, &config.controller.tasks);
+                Stream::listen(
+                    address,
+                    from,
+                    tasks,
+                    &scenario.arm(),
+                    timeout,
+                    Some(lines.clone()),
+                )
+                .map(Motion::Stream)
+                .map_err(|error| {
+                    let allowed = format!("an address of this PC and a free port ({error})");
+                    Invalid::new("--references", address, allowed)
+                })?
+            }
         };
-        Stream::listen(
-            address,
-            self.references_from,
-            tasks,
-            &scenario.arm(),
-            timeout,
-        )
-        .map(Source::Stream)
-        .map_err(|error| {
-            let allowed = format!("an address of this PC and a free port ({error})");
-            Invalid::new("--references", address, allowed)
+        lines.listen_to_console().map_err(Invalid::line)?;
+        Ok(Source {
+            motion,
+            events: Events::new(scenario.transitions(&controller)?),
+            changes,
         })
     }
 
