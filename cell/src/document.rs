@@ -9,8 +9,8 @@ use crate::arm::joint_limits::JointLimitsSpec;
 use crate::arm::pose::PoseSpec;
 use crate::keys::{Absent, Key};
 use crate::scenario::{
-    EquippedArm, Hand, KINDS, LevelLimitsSpec, LevelSpec, Limit, Mount, NullSpaceSpec,
-    ObserverSpec, OnLink, Push, Scenario, TOOL_POINT, TaskSpec, ToolSpec,
+    EVENTS, EquippedArm, Hand, KINDS, LevelLimitsSpec, LevelSpec, Limit, Mount, NullSpaceSpec,
+    ObserverSpec, OnLink, Push, Scenario, StaleSpec, TOOL_POINT, TaskSpec, ToolSpec,
 };
 
 /// A table of a file.
@@ -69,6 +69,7 @@ pub fn of_scenarios() -> Vec<Table> {
         Table::of("level", LevelSpec::KEYS).list(),
         Table::of("level.point", OnLink::KEYS)
             .about("Also of contacts and hands: a point that has no name."),
+        Table::of("level.stale", StaleSpec::KEYS),
         Table::of("level.limits", LevelLimitsSpec::KEYS),
     ];
     let below = [
@@ -80,7 +81,13 @@ pub fn of_scenarios() -> Vec<Table> {
             .about("Its force is told in [files.md](files.md#mount-and-tool)."),
         Table::of("limit", Limit::KEYS).list(),
     ];
-    above.into_iter().chain(kinds).chain(below).collect()
+    let events = EVENTS.map(|(word, keys)| Table {
+        kind: Some(word),
+        about: "[Tasks that change](changing-tasks.md), with an example.",
+        ..Table::of("event", keys).list()
+    });
+    let all = above.into_iter().chain(kinds).chain(below);
+    all.chain(events).collect()
 }
 
 /// The tables of an arm file.

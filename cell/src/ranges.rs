@@ -6,8 +6,9 @@ use std::str::FromStr;
 
 use controller_core::joint::DOF;
 use controller_core::ranges::{
-    CYCLE_RANGE_S, DEAD_CYCLES_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE, LEVEL_SPEED_RANGE, MASS_MIN,
-    MAX_LEVELS, MAX_ROWS, MOBILITY_RANGE, QUATERNION_NORMS,
+    CHANGE_RANGE_S, CYCLE_RANGE_S, DEAD_CYCLES_MAX, GRAVITY_MAX, JOINT_LIMIT_RANGE,
+    LEVEL_SPEED_RANGE, MASS_MIN, MAX_LEVELS, MAX_ROWS, MOBILITY_RANGE, QUATERNION_NORMS,
+    STALE_RANGE_S,
 };
 
 use crate::invalid::Invalid;
@@ -95,6 +96,12 @@ const GAIN_MAX: f64 = 1e6;
 /// Length of an experiment, of a move, of a push by hand \[s\].
 pub const DURATION_S: Range<f64> = Range::above(0.0, DURATION_MAX_S);
 
+/// Time that a change of tasks or gains takes \[s\].
+pub const CHANGE_S: Range<f64> = Range::new(CHANGE_RANGE_S[0], CHANGE_RANGE_S[1]);
+
+/// Age from which on a reference is too old \[s\].
+pub const STALE_S: Range<f64> = Range::new(STALE_RANGE_S[0], STALE_RANGE_S[1]);
+
 /// Start and end of a contact \[s\].
 pub const TIME_S: Range<f64> = Range::new(0.0, DURATION_MAX_S);
 
@@ -118,6 +125,9 @@ pub const LEVELS: Range<usize> = Range::new(1, MAX_LEVELS);
 
 /// Number of rows of all levels together.
 pub const ROWS: Range<usize> = Range::new(1, MAX_ROWS);
+
+/// The same of the exact law.
+pub const EXACT_ROWS: Range<usize> = Range::new(1, controller_core::ranges::EXACT_ROWS);
 
 /// Number of a link.
 pub const LINK: Range<usize> = Range::new(1, DOF);

@@ -3,7 +3,9 @@
 //! like any other.
 
 mod arm;
+mod changes;
 mod contact;
+mod event;
 mod hand;
 mod level;
 mod limits;
@@ -13,6 +15,7 @@ mod point;
 mod push;
 mod reference;
 mod session;
+mod stale;
 mod stroke;
 mod task;
 
@@ -22,7 +25,7 @@ use std::path::Path;
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::{ControllerConfig, Reference, Target, TaskSet};
+use controller_core::{ControllerConfig, Reference, Target, Task, TaskSet};
 use serde::Deserialize;
 
 use crate::arm::joint_limits::JointLimitsSpec;
@@ -39,7 +42,10 @@ use crate::ranges::{
 use crate::reader;
 
 pub use arm::{EquippedArm, Mount, TOOL_POINT, ToolSpec};
+pub use changes::CHANGES;
 pub use contact::Interval;
+pub(crate) use event::EVENTS;
+pub use event::{Event, TimedChange, TimedTransition};
 pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec};
 pub use limits::NEAR_LIMITS;
@@ -50,7 +56,8 @@ pub use point::PointSpec;
 pub use push::Push;
 pub(crate) use reference::KINDS;
 pub use reference::{AxisOf, ReferenceSpec};
-pub use session::ScenarioSource;
+pub use session::{Events, ScenarioSource};
+pub use stale::{AfterStaleSpec, StaleSpec};
 pub use stroke::Stroke;
 pub use task::TaskSpec;
 
@@ -108,11 +115,13 @@ keys! {
         /// Posture at the start, at rest; also q_d of the null space.
         pub start_deg: [f64; DOF], "deg", Said("7, within the ranges of the joints");
         /// Task levels, highest priority first.
-        pub levels as "level": Vec<LevelSpec>, "", And(Count(LEVELS, "levels"), SEVEN_ROWS);
+        pub levels as "level": Vec<LevelSpec>, "", And(Count(LEVELS, "levels"), ROWS_TOGETHER);
         /// Compliance of what the tasks leave.
         pub null_space: NullSpaceSpec, "", Said(TABLE);
         /// External-torque observer.
         pub observer: ObserverSpec, "", Said(TABLE);
+        /// Tasks and gains that change on the way ([changing-tasks.md](changing-tasks.md)).
+        pub events as "event": Vec<Event> = Vec::new() => "none", "", Said(TABLES);
         /// Scripted pushes.
         pub pushes as "contact": Vec<Push> = Vec::new() => "none", "", Said(TABLES);
         /// Hands of a person, which push and give way.
@@ -124,7 +133,7 @@ keys! {
 
 const TABLE: &str = "a table";
 const TABLES: &str = "any number of tables";
-const SEVEN_ROWS: &str = "together at most 7 axes";
+const ROWS_TOGETHER: &str = "together at most 12 axes, with the exact law 7";
 
 keys! {
     /// Compliance of the null space.
@@ -159,6 +168,16 @@ pub enum PostureSpec {
 }
 
 plain_choice!(PostureSpec);
+
+impl PostureSpec {
+    fn of_core(self) -> Posture {
+        match self {
+            Self::Constant => Posture::Constant,
+            Self::IntegralCoupled => Posture::IntegralCoupled,
+            Self::IntegralUncoupled => Posture::IntegralUncoupled,
+        }
+    }
+}
 
 keys! {
     /// External-torque observer.
@@ -265,6 +284,7 @@ impl Scenario {
                 .validate(number, arm)
                 .map_err(|error| error.in_list("level", number))?;
         }
+        self.changes(0)?;
         let rows: usize = self.levels.iter().map(|level| level.axes.len()).sum();
         if !ROWS.contains(rows) {
             let given = format!("{rows} rows together");
@@ -342,7 +362,7 @@ impl Scenario {
             .map(|(place, level)| level.task(place, &arm))
             .collect();
         Ok(ControllerConfig {
-            tasks: TaskSet::new(&tasks).map_err(|error| Invalid::line(error).within(&self.name))?,
+            tasks: self.task_set(&tasks)?,
             null_space: NullSpace {
                 stiffness: diagonal(self.null_space.stiffness),
                 damping: if dead_cycles == 0 {
@@ -350,16 +370,18 @@ impl Scenario {
                 } else {
                     NullDamping::Inertia(self.null_space.damping_rate)
                 },
-                posture: match self.null_space.posture {
-                    PostureSpec::Constant => Posture::Constant,
-                    PostureSpec::IntegralCoupled => Posture::IntegralCoupled,
-                    PostureSpec::IntegralUncoupled => Posture::IntegralUncoupled,
-                },
+                posture: self.null_space.posture.of_core(),
             },
             observer_gain: [self.observer.gain; DOF],
             cycle_s: self.cycle_s(),
             dead_cycles,
         })
+    }
+
+    fn task_set(&self, tasks: &[Task]) -> Result<TaskSet, Invalid> {
+        let set = TaskSet::new(tasks).map_err(|error| Invalid::line(error).within(&self.name))?;
+        let absent = (0..).zip(&self.levels).filter(|(_, level)| level.absent);
+        Ok(absent.fold(set, |set, (slot, _)| set.without(slot)))
     }
 
     /// The reference at time `t_s`, from where the levels are at the start, with

@@ -38,7 +38,7 @@ fn the_tables_say_the_ranges() {
         &[
             (
                 "`levels` |",
-                &[LEVELS.to_string(), format!("at most {}", ROWS.max)],
+                &[LEVELS.to_string(), format!("at most {}", EXACT_ROWS.max)],
             ),
             ("`robot` |", &arms()),
             ("`point` |", &[text(OFFSET_M)]),

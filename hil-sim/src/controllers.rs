@@ -8,7 +8,7 @@ use controller_core::law::control::{Control, TorqueDemand};
 use controller_core::law::hierarchy::Hierarchy;
 use controller_core::law::motion::MotionSplit;
 use controller_core::linalg::Cholesky;
-use controller_core::ranges::MAX_ROWS;
+use controller_core::ranges::EXACT_ROWS;
 
 use cell::names::Named;
 
@@ -181,9 +181,9 @@ impl SplitDemand {
 /// (34) as printed: every level is given d(Jbar_i dq)/dt = its command, as if
 /// the levels above it stood still.
 fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> SplitDemand {
-    let mut acceleration = data.rows.commanded;
-    for (acceleration, bias) in acceleration.iter_mut().zip(jbar_dot_dq(data)) {
-        *acceleration -= bias;
+    let mut acceleration = jbar_dot_dq(data);
+    for (acceleration, commanded) in acceleration.iter_mut().zip(&data.rows.commanded) {
+        *acceleration = commanded - *acceleration;
     }
     let control = Control {
         task_acceleration: data.hierarchy.solve_uncoupled(&acceleration),
@@ -198,10 +198,11 @@ fn literal(data: &Data<f64>, null_force: JointVector<f64>) -> SplitDemand {
 /// P = M^-1 J^T Lambda J of their stacked rows J. Differentiating P gives, with
 /// F = Lambda J dq, w = P dq, n = N dq and u = M^-1 ((dJ/dt)^T F - (dM/dt) w),
 /// (dN/dt) dq = -N u - J^# (dJ/dt) n, and dM/dt = C + C^T.
-fn jbar_dot_dq(data: &Data<f64>) -> [f64; MAX_ROWS] {
+fn jbar_dot_dq(data: &Data<f64>) -> [f64; EXACT_ROWS] {
     let (rows, dynamics, dq) = (&data.rows, &data.dynamics, &data.joints.dq);
     let cholesky = &dynamics.cholesky;
-    let mut bias = rows.bias;
+    let mut bias = [0.0; EXACT_ROWS];
+    bias.copy_from_slice(&rows.bias[..EXACT_ROWS]);
     for row in 0..rows.count() {
         let mut above = *rows;
         above.truncate(rows.level_start[row]);
@@ -213,7 +214,7 @@ fn jbar_dot_dq(data: &Data<f64>) -> [f64; MAX_ROWS] {
         motion.update(dynamics, &hierarchy, &data.joints);
         let (w, n) = (motion.task_velocity, motion.null_velocity);
         let mut transport = -(dynamics.coriolis_matrix * w + dynamics.coriolis_transpose_times(&w));
-        let mut turning = [0.0; MAX_ROWS];
+        let mut turning = [0.0; EXACT_ROWS];
         for k in 0..above.count() {
             transport += rows.jacobian_dot[k] * motion.task_momentum[k];
             turning[k] = rows.jacobian_dot[k].dot(&n);

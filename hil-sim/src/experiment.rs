@@ -103,6 +103,7 @@ impl Experiment {
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
+        controller: &Controller<f64>,
         mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
@@ -115,7 +116,9 @@ impl Experiment {
             plant_options: self.options,
             options: RobotOptions::default(),
         });
-        let mut client = BridgeClient::new(Lwr::new(), config, &self.scenario);
+        let changes = self.scenario.transitions(controller);
+        let changes = changes.map_err(io::Error::other)?;
+        let mut client = BridgeClient::new(Lwr::new(), config, &self.scenario).changing(changes);
         loopback::run(&mut robot, &mut client, &[], |instant, _| {
             progress(instant.t_s / self.scenario.duration_s);
             sink(instant)
@@ -150,7 +153,7 @@ impl Experiment {
         mut watch: impl FnMut(&Watched<'_>),
     ) -> io::Result<Summary> {
         if self.measurement == MeasurementKind::Fri {
-            return self.run_over_fri(sink, progress);
+            return self.run_over_fri(controller, sink, progress);
         }
         let scenario = &self.scenario;
         let arm = scenario.arm().parameters;
@@ -165,7 +168,8 @@ impl Experiment {
         let like_over_link = self.measurement == MeasurementKind::LikeFri;
         let mut driver = match self.controller {
             ControllerKind::Torque(law) => {
-                let mut driver = TorqueDriver::new(controller, law, scenario);
+                let changes = scenario.transitions(controller).map_err(io::Error::other)?;
+                let mut driver = TorqueDriver::new(controller, law, scenario).changing(changes);
                 if like_over_link {
                     driver = driver.like_over_link(self.options.dead_cycles);
                 }
@@ -184,8 +188,7 @@ impl Experiment {
             self.seed,
             driver.plant_options(self.options),
         );
-        let (levels, intervals) = (scenario.levels.len(), contacts.intervals());
-        let mut metrics = Metrics::new(levels, &intervals, &arm, cycle_s);
+        let mut metrics = Metrics::new(scenario, &contacts.intervals(), &arm);
         let mut ending = Ending::new(cycle_s);
 
         // Cycles before time 0, in which the arm is held where it starts.
@@ -232,6 +235,7 @@ impl Experiment {
                 }
             };
             look(&driver, false);
+            driver.begin_due(t_s).map_err(io::Error::other)?;
             let decision = driver.decide(&measurement, &reference, &motors);
             look(&driver, true);
             let acting = Acting {

@@ -11,7 +11,7 @@ use bridge::session::{Outcome, Session, SessionConfig};
 use crate::interrupt;
 use crate::link::{Expect, Fault, LockStep, Peer};
 use crate::robot::{ControlBox, Robot};
-use cell::scenario::{Scenario, ScenarioSource};
+use cell::scenario::{Scenario, ScenarioSource, TimedTransition};
 use record::run::Sample;
 
 /// The bridge as a client in this process, with its end of the robot's protocol.
@@ -29,6 +29,15 @@ impl<P: Protocol> BridgeClient<P> {
         Self {
             session: Session::new(protocol, config),
             source: ScenarioSource::new(scenario),
+        }
+    }
+
+    /// With changes of tasks and gains on the way.
+    #[must_use]
+    pub fn changing(self, changes: Vec<TimedTransition>) -> Self {
+        Self {
+            source: self.source.changing(changes),
+            ..self
         }
     }
 }

@@ -1,14 +1,18 @@
 //! Figures of a run, accumulated cycle by cycle.
 
+mod changes;
 mod figures;
 
-use cell::scenario::{Interval, LevelSpec, TaskSpec};
+use cell::scenario::{Interval, LevelSpec, Scenario, TaskSpec};
 use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::joint::{DOF, JointVector};
 
 use crate::limit_events::LimitEvents;
 use record::run::Sample;
 
+use self::changes::Presence;
+
+pub use changes::ChangeFigures;
 pub use figures::{
     Beyond, FaultCounts, JointFigures, LevelFigures, LimitCounts, ResidualFigures, TorqueFigures,
     TorqueStep, value,
@@ -74,6 +78,9 @@ pub struct Metrics {
     /// Of the change of torque in a cycle \[Nm\].
     step_bound: JointVector<f64>,
     last_torque: Option<JointVector<f64>>,
+    /// Of each event of the scenario.
+    pub(crate) changes: Vec<ChangeFigures>,
+    presence: Presence,
     step: Option<TorqueStep>,
     first: JointVector<f64>,
     last: JointVector<f64>,
@@ -96,9 +103,10 @@ fn names(levels: &[LevelSpec]) -> Vec<(String, bool)> {
 }
 
 impl Metrics {
-    /// No cycle yet, of `arm` in cycles of `cycle_s` \[s\].
+    /// No cycle of `scenario` with `arm` yet.
     #[must_use]
-    pub fn new(levels: usize, contacts: &[Interval], arm: &ArmParameters, cycle_s: f64) -> Self {
+    pub fn new(scenario: &Scenario, contacts: &[Interval], arm: &ArmParameters) -> Self {
+        let cycle_s = scenario.cycle_s();
         let limit =
             |value: fn(&LinkParameters) -> f64| JointVector::from_fn(|i, _| value(&arm.links[i]));
         let sums = LevelSums {
@@ -107,7 +115,7 @@ impl Metrics {
         };
         Self {
             contacts: contacts.to_vec(),
-            levels: vec![sums; levels],
+            levels: vec![sums; scenario.levels.len()],
             residual_error: Mean::default(),
             residual: Mean::default(),
             max_torque: [0.0; DOF],
@@ -120,6 +128,8 @@ impl Metrics {
             ],
             step_bound: limit(|link| link.torque_rate_limit) * (STEP_SHARE * cycle_s),
             last_torque: None,
+            changes: ChangeFigures::of(scenario),
+            presence: Presence::of(scenario),
             step: None,
             first: JointVector::zeros(),
             last: JointVector::zeros(),
@@ -143,7 +153,10 @@ impl Metrics {
         let inside = |contact: &Interval| contact.inside(sample.t_s);
         let inside = self.contacts.iter().any(inside);
         let larger = |of: Option<f64>, value: f64| Some(of.map_or(value, |most| most.max(value)));
-        for (level, shown) in self.levels.iter_mut().zip(&sample.levels) {
+        for (index, (level, shown)) in self.levels.iter_mut().zip(&sample.levels).enumerate() {
+            if !self.presence.is_there(index, sample.t_s) {
+                continue;
+            }
             if !shown.leak.is_nan() {
                 level.leak = larger(level.leak, shown.leak);
             }
@@ -185,8 +198,11 @@ impl Metrics {
     fn add_step(&mut self, sample: &Sample) {
         let last = self.last_torque.replace(sample.torque);
         let Some(last) = last else { return };
-        for joint in 0..DOF {
-            let step_nm = (sample.torque[joint] - last[joint]).abs();
+        let steps: [f64; DOF] = (sample.torque - last).abs().into();
+        for change in &mut self.changes {
+            change.add(sample, &steps, &self.presence);
+        }
+        for (joint, step_nm) in steps.into_iter().enumerate() {
             let bound_nm = self.step_bound[joint];
             let most = self.step.map_or(1.0, |step| step.step_nm / step.bound_nm);
             if step_nm / bound_nm > most {

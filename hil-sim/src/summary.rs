@@ -7,8 +7,8 @@ use cell::scenario::{LevelSpec, Metric, Scenario};
 use crate::after_fault::{AfterFault, Ending};
 use crate::limit_events::LimitEvents;
 use crate::metrics::{
-    self, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics, ResidualFigures,
-    TorqueFigures,
+    self, ChangeFigures, FaultCounts, JointFigures, LevelFigures, LimitCounts, Metrics,
+    ResidualFigures, TorqueFigures,
 };
 use crate::robot::{FciFigures, LinkFigures};
 use crate::sample::Stop;
@@ -96,6 +96,8 @@ pub struct Summary {
     pub limit_events: Option<LimitEvents>,
     #[serde(skip)]
     pub limit_sentences: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<ChangeFigures>,
     pub faults: FaultCounts,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after_fault: Option<AfterFault>,
@@ -156,6 +158,7 @@ impl Summary {
                 .is_known()
                 .then(|| metrics.limit_events.clone()),
             limit_sentences: metrics.limit_sentences(&scenario.levels),
+            changes: metrics.changes.clone(),
             faults,
             after_fault: ending.seen(),
             link: None,
@@ -190,6 +193,7 @@ impl Summary {
         .filter(|(_, cycles)| *cycles > 0)
         .map(|(what, cycles)| format!("{what} in {cycles} of {} cycles", self.cycles))
         .chain(self.torque.step.map(|step| step.to_string()))
+        .chain(self.changes.iter().map(ToString::to_string))
         .chain(self.limit_sentences.iter().cloned())
         .collect()
     }

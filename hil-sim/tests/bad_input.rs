@@ -297,7 +297,7 @@ fn scenario_files() {
     };
     let mut lines = String::new();
     let more = "[[level]]\npoint = \"wrist\"\naxes = \"xyz\"\nstiffness = 1\ndamping = 1\nreference = { kind = \"hold\" }\n";
-    let rows = format!("{more}{more}[null_space]");
+    let rows = format!("{}[null_space]", more.repeat(4));
     let long = format!("name = \"{}\"", "long".repeat(100_000));
     let tool = |from: &str, to: &str| {
         let good = "[tool]\nmass_kg = 1\ncenter_of_mass_m = [0, 0, 0]\n\
@@ -377,7 +377,37 @@ fn scenario_files() {
             "point = \"flange\"",
             "task = \"orientation\"\npoint = \"flange\"",
         ),
-        ("more than seven rows", "[null_space]", &rows),
+        ("more than twelve rows", "[null_space]", &rows),
+        (
+            "an event of a level that is there",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nkind = \"add\"\nlevel = 1\n\n[null_space]",
+        ),
+        (
+            "an event of a level that there is not",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nkind = \"remove\"\nlevel = 2\n\n[null_space]",
+        ),
+        (
+            "an event of another kind",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nkind = \"swap\"\nlevel = 1\n\n[null_space]",
+        ),
+        (
+            "an event with a key of another kind",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nkind = \"remove\"\nlevel = 1\norder = [1]\n\n[null_space]",
+        ),
+        (
+            "an order without a level",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nkind = \"reorder\"\norder = []\n\n[null_space]",
+        ),
+        (
+            "an event in no time",
+            "[null_space]",
+            "[[event]]\nat_s = 1.0\nduration_s = 0.0\nkind = \"remove\"\nlevel = 1\n\n[null_space]",
+        ),
         ("zero damping of a joint", "0.3, 0.03]", "0.3, 0.0]"),
         ("damping over the sampling bound", "0.3, 0.03]", "0.3, 0.3]"),
         (

@@ -57,6 +57,12 @@ impl Toml for f64 {
     }
 }
 
+impl Toml for bool {
+    fn toml(&self) -> String {
+        self.to_string()
+    }
+}
+
 impl Toml for usize {
     fn toml(&self) -> String {
         self.to_string()

@@ -7,6 +7,7 @@ use super::arm::EquippedArm;
 use super::near::LevelLimitsSpec;
 use super::point::{POINT, PointSpec};
 use super::reference::ReferenceSpec;
+use super::stale::StaleSpec;
 use super::task::TaskSpec;
 use crate::invalid::Invalid;
 use crate::keys::allowed::{And, AxesOf, Choice, Said};
@@ -30,6 +31,10 @@ keys! {
         pub stiffness: AxisGain, "1/s2", And(GAIN, ONE_OR_EACH);
         /// K_d.
         pub damping: AxisGain, "1/s", And(GAIN, ONE_OR_EACH);
+        /// Whether the level is not there before an [`[[event]]`](#event) adds it.
+        pub absent: bool = false, "", Choice;
+        /// What happens when its reference gets too old.
+        pub stale: Option<StaleSpec> = None => "nothing", "", Said("a table");
         /// What happens near singularities and far from the target.
         pub limits: Option<LevelLimitsSpec> = None => "none", "", Said("a table");
         /// Motion about where the level is at the start.
@@ -57,18 +62,10 @@ impl LevelSpec {
     pub(super) fn validate(&self, place: usize, arm: &EquippedArm) -> Result<(), Invalid> {
         self.point.validate(arm)?;
         self.check_keys()?;
-        let axes = self.axes();
-        for (name, gain) in [("stiffness", &self.stiffness), ("damping", &self.damping)] {
-            if let AxisGain::PerAxis(values) = gain
-                && values.len() != axes.count()
-            {
-                let allowed = format!("1 or {} for axes \"{}\"", axes.count(), self.axes);
-                return Err(Invalid::new(
-                    name,
-                    format_args!("{} values", values.len()),
-                    allowed,
-                ));
-            }
+        self.check_gain("stiffness", &self.stiffness)?;
+        self.check_gain("damping", &self.damping)?;
+        if let Some(stale) = &self.stale {
+            stale.validate().map_err(|error| error.in_table("stale"))?;
         }
         self.reference.fits(self.task)?;
         if let Some(limits) = &self.limits {
@@ -81,6 +78,19 @@ impl LevelSpec {
             .map_err(|error| error.in_table("reference"))
     }
 
+    /// Whether a gain has a number for each axis, or one for all.
+    pub(super) fn check_gain(&self, name: &str, gain: &AxisGain) -> Result<(), Invalid> {
+        let count = self.axes().count();
+        match gain {
+            AxisGain::PerAxis(values) if values.len() != count => {
+                let allowed = format!("1 or {count} for axes \"{}\"", self.axes);
+                let given = format_args!("{} values", values.len());
+                Err(Invalid::new(name, given, allowed))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The controlled axes; all where they are not valid.
     fn axes(&self) -> Axes {
         Axes::from_name(&self.axes).unwrap_or(Axes::XYZ)
@@ -89,6 +99,21 @@ impl LevelSpec {
     /// The core's task for `arm`, at the place `place`, counted from 0. The level must be valid.
     #[must_use]
     pub fn task(&self, place: usize, arm: &EquippedArm) -> Task {
+        let (axes, gains) = (self.axes(), self.gains(&self.stiffness, &self.damping));
+        let task = match self.task {
+            TaskSpec::Position => Task::position(self.point.resolve(arm), axes, gains),
+            TaskSpec::Orientation => Task::orientation(self.point.frame(arm), axes, gains),
+        };
+        Task {
+            limits: self.limits.map(|limits| limits.of_level(place)),
+            stale: self.stale.map(|stale| stale.of_core()),
+            ..task
+        }
+    }
+
+    /// Gains on the controlled axes. The level must be valid.
+    #[must_use]
+    pub fn gains(&self, stiffness: &AxisGain, damping: &AxisGain) -> TaskGains {
         let axes = self.axes();
         let spread = |gain: &AxisGain| match gain {
             AxisGain::Uniform(value) => [*value; 3],
@@ -103,15 +128,7 @@ impl LevelSpec {
                 })
             }
         };
-        let gains = TaskGains::diagonal(spread(&self.stiffness), spread(&self.damping));
-        let task = match self.task {
-            TaskSpec::Position => Task::position(self.point.resolve(arm), axes, gains),
-            TaskSpec::Orientation => Task::orientation(self.point.frame(arm), axes, gains),
-        };
-        Task {
-            limits: self.limits.map(|limits| limits.of_level(place)),
-            ..task
-        }
+        TaskGains::diagonal(spread(stiffness), spread(damping))
     }
 
     /// "flange xyz".

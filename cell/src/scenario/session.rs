@@ -2,12 +2,13 @@
 //! reference motion.
 
 use bridge::session::SessionConfig;
-use bridge::source::ReferenceSource;
+use bridge::source::{Begin, ReferenceSource};
 use controller_core::Reference;
 use controller_core::law::null_space::NullDamping;
 
-use super::{ReferenceSpec, Scenario};
+use super::{ReferenceSpec, Scenario, TimedTransition};
 use crate::invalid::Invalid;
+use crate::terminal::tell;
 
 impl Scenario {
     /// The session that runs this scenario for `duration_s` \[s\] on a robot whose
@@ -38,6 +39,32 @@ impl Scenario {
 pub struct ScenarioSource {
     levels: Vec<ReferenceSpec>,
     origin: Reference<f64>,
+    events: Events,
+}
+
+/// Changes of a scenario that are still to be begun.
+#[derive(Clone, Debug, Default)]
+pub struct Events {
+    /// The next one last.
+    changes: Vec<TimedTransition>,
+}
+
+impl Events {
+    /// In the order of their times.
+    #[must_use]
+    pub fn new(mut changes: Vec<TimedTransition>) -> Self {
+        changes.reverse();
+        Self { changes }
+    }
+
+    /// Begins those whose time has come at `t_s` \[s\]. What cannot be is told and left out.
+    pub fn begin(&mut self, t_s: f64, begin: &mut Begin<'_>) {
+        while let Some((at_s, change)) = self.changes.pop_if(|(at_s, _)| *at_s <= t_s) {
+            if let Err(error) = begin(&change) {
+                tell(format_args!("the event at {at_s} s is left out: {error}"));
+            }
+        }
+    }
 }
 
 impl ScenarioSource {
@@ -49,6 +76,16 @@ impl ScenarioSource {
                 .map(|level| level.reference.clone())
                 .collect(),
             origin: Reference::hold(scenario.levels.len(), scenario.start()),
+            events: Events::default(),
+        }
+    }
+
+    /// With changes on the way, in the order of their times.
+    #[must_use]
+    pub fn changing(self, changes: Vec<TimedTransition>) -> Self {
+        Self {
+            events: Events::new(changes),
+            ..self
         }
     }
 }
@@ -64,5 +101,9 @@ impl ReferenceSource for ScenarioSource {
             *target = level.sample(target, t_s);
         }
         Some(reference)
+    }
+
+    fn change(&mut self, t_s: f64, begin: &mut Begin<'_>) {
+        self.events.begin(t_s, begin);
     }
 }

@@ -51,11 +51,12 @@ impl Files {
         let Some(kind) = table.kind else {
             return file;
         };
-        let (_, reference) = REFERENCES
-            .iter()
-            .find(|(known, _)| *known == kind)
-            .unwrap_or_else(|| panic!("no reference of the kind {kind}"));
-        let reference: toml::Table = reference.parse().expect("TOML");
+        if table.path == "event" {
+            let event = toml_of(&EVENTS, kind);
+            file.insert("event".into(), vec![Value::Table(event)].into());
+            return file;
+        }
+        let reference = toml_of(&REFERENCES, kind);
         let level = entered(&mut file, "level");
         level.insert("reference".into(), Value::Table(reference));
         if table.about == "For positions." {
@@ -67,6 +68,10 @@ impl Files {
     /// What the reader makes of the file with `key` of `table` changed; of none removed.
     pub fn with(&self, table: &Table, key: &str, value: Option<Value>) -> Result<String, String> {
         let mut file = self.base(table);
+        if key == "level" && table.path.is_empty() {
+            // What an event names depends on the levels.
+            file.remove("event");
+        }
         let place = entered(&mut file, table.path);
         match value {
             Some(value) => place.insert(key.into(), value),
@@ -82,6 +87,13 @@ impl Files {
         let value = place.get(key).cloned();
         value.unwrap_or_else(|| panic!("the valid file lacks {key} of [{}]", table.path))
     }
+}
+
+/// The table of a kind in a list of them.
+fn toml_of(list: &[(&str, &str)], kind: &str) -> toml::Table {
+    let found = list.iter().find(|(known, _)| *known == kind);
+    let (_, text) = found.unwrap_or_else(|| panic!("nothing of the kind {kind}"));
+    text.parse().expect("TOML")
 }
 
 /// The table at the end of a path; of lists the first entry.
@@ -124,6 +136,20 @@ stiffness = 400
 damping = [40]
 limits = { drive_mobility = 0.05, release_mobility = 0.005, error_speed_m_s = 0.3, lost_speed_m_s = 0.15, stiff_mobility = 0.04 }
 reference = { kind = "hold" }
+absent = true
+stale = { after_s = 0.2, then = "release" }
+
+[[level]]
+point = "wrist"
+axes = "xy"
+stiffness = 400
+damping = 40
+reference = { kind = "hold" }
+
+[[event]]
+kind = "remove"
+at_s = 2
+level = 2
 
 [[contact]]
 point = "elbow"
@@ -150,6 +176,31 @@ dead_cycles = 2
 metric = "level1_rms_mrad"
 below = 1
 "#;
+
+/// An event of every kind.
+const EVENTS: [(&str, &str); 5] = [
+    (
+        "add",
+        "kind = 'add'\nat_s = 1\nduration_s = 1\nlevel = 1\nplace = 1",
+    ),
+    (
+        "remove",
+        "kind = 'remove'\nat_s = 1\nduration_s = 1\nlevel = 2",
+    ),
+    (
+        "gains",
+        "kind = 'gains'\nat_s = 1\nduration_s = 1\nlevel = 2\nstiffness = 100\ndamping = 20",
+    ),
+    (
+        "reorder",
+        "kind = 'reorder'\nat_s = 1\nduration_s = 1\norder = [2]",
+    ),
+    (
+        "null-space",
+        "kind = 'null-space'\nat_s = 1\nduration_s = 1\nstiffness = [9, 9, 9, 9, 1, 1, 0.1]\n\
+         damping = [4, 4, 3, 3, 0.4, 0.3, 0.03]\ndamping_rate = 5",
+    ),
+];
 
 /// A table of every kind of reference.
 const REFERENCES: [(&str, &str); 6] = [

@@ -66,11 +66,15 @@ pub fn cases(path: &str, key: &str, given: &Value) -> Option<[Vec<Value>; 2]> {
         ("joint", "name") => [texts(&["a", "A 1 ä", &long]), texts(&["", &longer, "a\nb"])],
         ("", "robot") => [vec!["lwr_iv".into()], texts(&["lwr", "", "missing.toml"])],
         ("", "mount" | "tool" | "joint_limits" | "null_space" | "observer" | "base" | "flange")
-        | ("level", "limits")
+        | ("level", "limits" | "stale")
         | ("joint", "friction" | "end_approach") => [vec![given.clone()], values(&["1", "[]"])],
         ("", "contact" | "hand" | "limit") => {
             [vec![times(0), times(1), times(100)], values(&["1", "{}"])]
         }
+        // A level goes once only.
+        ("", "event") => [vec![times(0), times(1)], values(&["1", "{}"])],
+        ("event", "place") => [values(&["1", "2"]), values(&["0", "3"])],
+        ("event", "order") => [values(&["[2]"]), values(&["[]", "[0]", "[1]", "[2, 2]"])],
         // Of the LWR IV+, and beyond its joint 7.
         ("", "start_deg") => [
             values(&[
@@ -139,7 +143,7 @@ pub fn cases(path: &str, key: &str, given: &Value) -> Option<[Vec<Value>; 2]> {
         ("level.reference", "ramp_s") => [values(&["1e-9", "1.0"]), values(&["0", "1.0000001"])],
         ("limit", "metric") => [
             texts(&["level1_rms_mrad", "level1_max_mrad", "level1_plateau_mrad"]),
-            texts(&["level2_rms_mm", "level1_rms_mm", "rms"]),
+            texts(&["level3_rms_mm", "level1_rms_mm", "rms"]),
         ],
         _ => return None,
     })

@@ -6,7 +6,9 @@ use controller_core::cycle::velocity::{CORNER_HZ, VelocityEstimator};
 use controller_core::fault::Mode;
 use controller_core::joint::{JointState, JointVector};
 use controller_core::resolver::{Resolver, ResolverConfig, ResolverState};
-use controller_core::{Controller, Fault, Measurement, Reference, State, Step};
+use controller_core::{
+    ChangeError, Controller, Fault, Measurement, Reference, State, Step, Transition,
+};
 
 use crate::controllers::{LawGains, SplitDemand, TorqueLaw};
 use crate::plant::{DeadTime, Impedance, PlantOptions};
@@ -109,6 +111,17 @@ impl Driver<'_> {
         }
     }
 
+    /// Begins the changes of tasks and gains whose time has come at `t_s` \[s\].
+    ///
+    /// # Errors
+    /// A change that the state of the tasks does not take.
+    pub fn begin_due(&mut self, t_s: f64) -> Result<(), ChangeError> {
+        match self {
+            Self::Torque(driver) => driver.begin_due(t_s),
+            Self::Position(_) => Ok(()),
+        }
+    }
+
     /// One cycle. `motors` is how they move.
     pub fn decide(
         &mut self,
@@ -167,6 +180,8 @@ pub(super) struct TorqueDriver<'a> {
     gains: LawGains,
     state: State<f64>,
     link: Option<LinkConditions>,
+    /// Those that are still to be begun, with their times \[s\]; the next one last.
+    changes: Vec<(f64, Transition<f64>)>,
 }
 
 impl<'a> TorqueDriver<'a> {
@@ -180,7 +195,21 @@ impl<'a> TorqueDriver<'a> {
             },
             state: State::new(),
             link: None,
+            changes: Vec::new(),
         }
+    }
+
+    /// With changes of tasks and gains on the way.
+    pub fn changing(self, mut changes: Vec<(f64, Transition<f64>)>) -> Self {
+        changes.reverse();
+        Self { changes, ..self }
+    }
+
+    fn begin_due(&mut self, t_s: f64) -> Result<(), ChangeError> {
+        while let Some((_, change)) = self.changes.pop_if(|(at_s, _)| *at_s <= t_s) {
+            self.controller.begin(&mut self.state, &change)?;
+        }
+        Ok(())
     }
 
     /// Under the conditions of a link whose torques act `dead_cycles` later.

@@ -15,7 +15,7 @@ use cell::arm::joint_limits::JointLimitsSpec;
 use cell::arm::robot::Robot;
 use cell::invalid::Invalid;
 use cell::names::Named;
-use cell::ranges::{CYCLE_MS, DEAD_CYCLES, LEVELS, QUATERNION_NORM, ROWS, Range};
+use cell::ranges::{CYCLE_MS, DEAD_CYCLES, EXACT_ROWS, LEVELS, QUATERNION_NORM, Range};
 use cell::reader;
 use cell::scenario::{EquippedArm, LawSpec, LevelLimitsSpec, Mount, PointSpec, TaskSpec, ToolSpec};
 
@@ -200,9 +200,9 @@ impl Input {
                 .validate(index, &arm)
                 .map_err(|error| error.in_list("levels", index))?;
         }
-        if !ROWS.contains(rows) {
+        if !EXACT_ROWS.contains(rows) {
             let given = format!("{rows} rows together");
-            return Err(Invalid::new("levels", given, ROWS));
+            return Err(Invalid::new("levels", given, EXACT_ROWS));
         }
         let disturbances = self.before.as_ref();
         let disturbances = disturbances.map_or(0, |before| before.disturbance.len());

@@ -12,7 +12,7 @@ use crate::experiment::{Experiment, Watched};
 use cell::invalid::Invalid;
 use cell::names::MeasurementKind;
 use cell::ranges::Range;
-use cell::scenario::{LawSpec, LevelLimitsSpec, PointSpec, Scenario, TaskSpec};
+use cell::scenario::{Event, LawSpec, LevelLimitsSpec, PointSpec, Scenario, TaskSpec};
 
 /// What a cycle starts from.
 struct Start {
@@ -36,7 +36,18 @@ pub fn state_at(experiment: &Experiment, t_s: f64) -> Result<String, Invalid> {
         let allowed = "with --controller hierarchical and --measurement direct";
         return Err(Invalid::new("--state-at", t_s, allowed));
     }
-    let cycle_s = experiment.scenario.cycle_s();
+    // A state has the tasks as they are at the start.
+    let scenario = &experiment.scenario;
+    let first_event = scenario.events.iter().map(Event::at_s).reduce(f64::min);
+    if scenario.levels.iter().any(|level| level.absent) {
+        let allowed = "of a scenario without absent levels";
+        return Err(Invalid::new("--state-at", t_s, allowed));
+    }
+    if let Some(at_s) = first_event.filter(|at_s| t_s >= *at_s) {
+        let allowed = format!("before the first event, {at_s}");
+        return Err(Invalid::new("--state-at", t_s, allowed));
+    }
+    let cycle_s = scenario.cycle_s();
     let mut until = experiment.clone();
     until.scenario.duration_s = experiment.scenario.duration_s.min(t_s + 2.0 * cycle_s);
     let controller = until.controller()?;

@@ -1,6 +1,6 @@
 //! One figure of a run.
 
-use super::plot::Chart;
+use super::plot::{Band, Chart};
 use super::run::Run;
 use super::svg::Svg;
 
@@ -22,12 +22,20 @@ pub fn chart(run: &Run<'_>, id: &str, what: &str, description: &str) -> Chart {
 }
 
 /// A chart as a figure; the caption goes on with what is shaded: " Shaded: contacts A
-/// to D.", or nothing.
+/// to D, changes 1 to 4.", or nothing.
 pub fn figure(run: &Run<'_>, file: &'static str, caption: &str, chart: &Chart) -> Figure {
-    let shaded = match run.bands().as_slice() {
-        [] => String::new(),
-        [one] => format!(" Shaded: contact {}.", one.label),
-        [first, .., last] => format!(" Shaded: contacts {} to {}.", first.label, last.label),
+    let named = |what: &str, bands: &[Band]| match bands {
+        [] => None,
+        [one] => Some(format!("{what} {}", one.label)),
+        [first, .., last] => Some(format!("{what}s {} to {}", first.label, last.label)),
+    };
+    let shaded = [
+        named("contact", &run.bands()),
+        named("change", &run.changes()),
+    ];
+    let shaded = match shaded.into_iter().flatten().collect::<Vec<_>>() {
+        none if none.is_empty() => String::new(),
+        some => format!(" Shaded: {}.", some.join(", ")),
     };
     Figure {
         file,

@@ -20,6 +20,9 @@ pub fn run_report(run: &Run<'_>) -> String {
     section(&mut body, "Acceptance", &tables::acceptance(run));
     section(&mut body, "Task levels", &tables::levels(run));
     section(&mut body, "Contacts", &tables::contacts(run));
+    if !run.scenario.events.is_empty() {
+        section(&mut body, "Changes", &tables::changes(run));
+    }
     section(&mut body, "Figures", &drawings(run));
     if let Some(tables) = limits::tables(run) {
         section(&mut body, "Limits met", &tables);

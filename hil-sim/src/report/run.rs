@@ -127,13 +127,28 @@ impl<'a> Run<'a> {
             .collect()
     }
 
-    /// A chart without panels over the whole time of the run, with its contacts, and
-    /// where it was stopped.
+    /// When tasks and gains changed, numbered in the order of the scenario, as far as the run came.
+    #[must_use]
+    pub fn changes(&self) -> Vec<Band> {
+        let events = (1..).zip(&self.scenario.events);
+        events
+            .filter(|(_, event)| self.reached(event.at_s()))
+            .map(|(number, event)| Band {
+                from: event.at_s(),
+                to: event.ends_s(),
+                label: number.to_string(),
+            })
+            .collect()
+    }
+
+    /// A chart without panels over the whole time of the run, with its contacts and the
+    /// changes of its tasks, and where it was stopped.
     #[must_use]
     pub fn chart(&self, id: &str, title: impl Into<String>, description: &str) -> Chart {
         let mut chart = Chart::over_time(id, title, description);
         chart.x_range = Some([0.0, self.scenario.duration_s]);
         chart.bands = self.bands();
+        chart.bands.extend(self.changes());
         if self.summary.verdict == Verdict::Stopped
             && let Some(&at) = self.recording.t().last()
         {

@@ -217,6 +217,37 @@ pub fn contacts(run: &Run<'_>) -> String {
     table.finish()
 }
 
+/// Which tasks and gains changed, and what that did.
+pub fn changes(run: &Run<'_>) -> String {
+    let levels = &run.summary.levels;
+    let errors = (1..)
+        .zip(levels)
+        .map(|(place, level)| format!("#Level {place} [{}]", level.unit().suffix()));
+    let names = ["Change", "What", "Interval [s]", "#Torque step [Nm]"];
+    let mut table = Table::new(
+        "Changes of tasks and gains, numbered as in the figures: the largest change of a joint's \
+         torque from one cycle to the next, and the largest error of the levels that are there all \
+         the time.",
+        names.map(String::from).into_iter().chain(errors),
+    );
+    for (number, change) in (1..).zip(&run.summary.changes) {
+        let missed = if run.reached(change.from_s) {
+            ""
+        } else {
+            ", not reached"
+        };
+        let cells = [
+            escape(&change.what),
+            format!("{} to {}{missed}", plain(change.from_s), plain(change.to_s)),
+            format!("#{}", figure(change.torque_step_nm)),
+        ];
+        let errors = change.level_max.iter().map(|&most| self::number(most));
+        let badge = format!("<span class=\"badge\">{number}</span>");
+        table.row(&badge, cells.into_iter().chain(errors));
+    }
+    table.finish()
+}
+
 /// Torque, travel, estimate, limits and faults.
 pub fn joints(run: &Run<'_>) -> String {
     let summary = run.summary;

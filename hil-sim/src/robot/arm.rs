@@ -98,7 +98,7 @@ impl<B: ControlBox> Robot<B> {
             plant: Plant::with_options(setup.plant, arm, q0, cycle_s, setup.seed, own),
             control_box: B::new(&setup.options, cycle_s, &q0, arm, dead_cycles),
             counters: Counters::default(),
-            metrics: Metrics::new(scenario.levels.len(), &contacts.intervals(), arm, cycle_s),
+            metrics: Metrics::new(scenario, &contacts.intervals(), arm),
             contacts,
             typed: Vec::new(),
             drives_off: false,

@@ -1,6 +1,6 @@
 //! What a person types while the robot is served, and Ctrl-C.
 
-use std::io::{self, BufRead, ErrorKind};
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -11,7 +11,7 @@ use crate::sample::Stop;
 use cell::invalid::Invalid;
 use cell::ranges::{DURATION_S, Range};
 use cell::scenario::{EquippedArm, PointSpec};
-use cell::terminal::tell;
+use cell::terminal::{next_line, tell};
 
 /// One line for a line that means nothing.
 const HELP: &str = "allowed: push POINT FX FY FZ SECONDS (N, base-plate axes), release, \
@@ -74,30 +74,6 @@ impl Wish {
     }
 }
 
-/// The next line, none at the end. Of a line that is too long only the beginning is kept,
-/// longer than [`LONGEST`]; what is no text is replaced.
-fn next_line(input: &mut impl BufRead) -> io::Result<Option<String>> {
-    let mut line = Vec::new();
-    let mut begun = false;
-    loop {
-        let bytes = match input.fill_buf() {
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            bytes => bytes?,
-        };
-        let (read, end) = match bytes.iter().position(|&byte| byte == b'\n') {
-            Some(length) => (length, 1),
-            None => (bytes.len(), 0),
-        };
-        line.extend(bytes.iter().take(read.min(LONGEST + 1 - line.len())));
-        begun |= read + end > 0;
-        let over = read + end == 0;
-        input.consume(read + end);
-        if over || end > 0 {
-            return Ok(begun.then(|| String::from_utf8_lossy(&line).into_owned()));
-        }
-    }
-}
-
 /// Lines and interrupts, as they come.
 pub struct Operator {
     lines: Option<Receiver<String>>,
@@ -124,7 +100,7 @@ impl Operator {
         let (sender, lines) = sync_channel(QUEUE);
         thread::spawn(move || {
             let mut input = io::stdin().lock();
-            while let Ok(Some(line)) = next_line(&mut input) {
+            while let Ok(Some(line)) = next_line(&mut input, LONGEST) {
                 if sender.send(line).is_err() {
                     return;
                 }
@@ -182,7 +158,7 @@ mod tests {
         // Pieces of 7 bytes: lines begin and end anywhere in them.
         let mut input = io::BufReader::with_capacity(7, &input[..]);
         let mut lines = Vec::new();
-        while let Some(line) = next_line(&mut input).expect("memory") {
+        while let Some(line) = next_line(&mut input, LONGEST).expect("memory") {
             assert!(line.len() <= LONGEST + 1);
             lines.push(read(&line));
         }
