@@ -12,7 +12,7 @@ const FAULTS: RangeInclusive<u32> = 32..=95;
 const LIMITS: RangeInclusive<u32> = 96..=159;
 
 /// Published numbers keep their names for ever: this list only grows.
-const PUBLISHED: [(u32, &str); 14] = [
+const PUBLISHED: [(u32, &str); 16] = [
     (32, "implausible"),
     (33, "non_finite_torque"),
     (34, "wrong_target"),
@@ -27,6 +27,8 @@ const PUBLISHED: [(u32, &str); 14] = [
     (104, "bounded"),
     (105, "unresolved"),
     (106, "stuck"),
+    (107, "changing"),
+    (108, "stale"),
 ];
 
 /// A row of the registry.
@@ -126,6 +128,8 @@ fn a_status_names_its_limits_by_the_registry() {
         at_least: IndexSet(1),
         unresolved: true,
         stuck: IndexSet(1),
+        changing: IndexSet(130),
+        stale: IndexSet(4),
         ..with(5, 3, 1, 128)
     };
     assert_eq!(

@@ -101,6 +101,7 @@ pub fn configuration(split: &[Spec]) -> ControllerConfig {
         axes: Axes::from_name(axes).expect("axes of a split"),
         gains: COUPLED_GAINS,
         limits: None,
+        stale: None,
     };
     let tasks: Vec<_> = split.iter().map(task).collect();
     let mut null_space = two_level().null_space;
