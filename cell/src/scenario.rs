@@ -5,6 +5,7 @@
 mod arm;
 mod changes;
 mod contact;
+mod course;
 mod event;
 mod hand;
 mod level;
@@ -25,9 +26,10 @@ use std::path::Path;
 use controller_core::gain::diagonal;
 use controller_core::joint::{DOF, JointVector};
 use controller_core::law::null_space::{NullDamping, NullSpace, Posture};
-use controller_core::{ControllerConfig, Reference, Target, Task, TaskSet};
+use controller_core::{Controller, ControllerConfig, Reference, Target, Task, TaskSet};
 use serde::Deserialize;
 
+use self::course::Changing;
 use crate::arm::joint_limits::JointLimitsSpec;
 use crate::arm::robot::Robot;
 use crate::file::{self, is_path};
@@ -44,8 +46,9 @@ use crate::reader;
 pub use arm::{EquippedArm, Mount, TOOL_POINT, ToolSpec};
 pub use changes::CHANGES;
 pub use contact::Interval;
+pub use course::{TimedChange, TimedTransition};
 pub(crate) use event::EVENTS;
-pub use event::{Event, TimedChange, TimedTransition};
+pub use event::Event;
 pub use hand::{Direction, Hand};
 pub use level::{AxisGain, LevelSpec};
 pub use limits::NEAR_LIMITS;
@@ -376,6 +379,36 @@ impl Scenario {
             cycle_s: self.cycle_s(),
             dead_cycles,
         })
+    }
+
+    /// The events in the order of their times, for a loop with `dead_cycles` cycles between
+    /// measurement and torque.
+    ///
+    /// # Errors
+    /// The first event that cannot be, after those before it.
+    pub fn changes(&self, dead_cycles: u8) -> Result<Vec<TimedChange>, Invalid> {
+        self.changing().changes(dead_cycles)
+    }
+
+    /// The events as `controller`, of this scenario, is to begin them, in the order of their times.
+    ///
+    /// # Errors
+    /// An event that the core refuses, for example one of tasks of the exact law.
+    pub fn transitions(
+        &self,
+        controller: &Controller<f64>,
+    ) -> Result<Vec<TimedTransition>, Invalid> {
+        let prepared = self.changing().transitions(controller);
+        prepared.map_err(|error| error.within(&self.name))
+    }
+
+    fn changing(&self) -> Changing<'_> {
+        Changing {
+            levels: &self.levels,
+            events: &self.events,
+            arm: self.arm(),
+            posture: self.null_space.posture.of_core(),
+        }
     }
 
     fn task_set(&self, tasks: &[Task]) -> Result<TaskSet, Invalid> {

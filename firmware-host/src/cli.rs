@@ -13,6 +13,7 @@ use cell::arguments::values::{number, processor};
 use cell::invalid::Invalid;
 use cell::names::{Named as _, RobotInterface};
 use cell::ranges::CYCLE_MS;
+use cell::scenario::Scenario;
 use cell::terminal::{print, tell};
 use clap::{Parser, Subcommand};
 
@@ -60,7 +61,7 @@ pub fn main() -> ExitCode {
         Err(error) => return usage::report("firmware-host", &["run", "doctor"], &error),
     };
     let outcome = match cli.command {
-        Command::Run(options) => options.run(),
+        Command::Run(options) => run(&options),
         Command::Doctor {
             robot,
             cycle_ms,
@@ -73,6 +74,17 @@ pub fn main() -> ExitCode {
             tell(format_args!("error: {error}"));
             ExitCode::from(2)
         }
+    }
+}
+
+/// Runs the motion: the exit code.
+fn run(options: &RunOptions) -> Result<u8, Invalid> {
+    let robot = options.robot()?;
+    options.refuse_options_of_others(robot)?;
+    let scenario = Scenario::find(options.scenario())?;
+    match robot {
+        RobotInterface::Lwr => options.run_lwr(&scenario),
+        RobotInterface::Fci => options.run_fci(&scenario),
     }
 }
 

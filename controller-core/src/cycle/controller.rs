@@ -2,6 +2,7 @@
 
 use super::data::{Data, Input};
 use super::measurement::believe_posture;
+use super::tasks::Own;
 use crate::arm::ArmModel;
 use crate::fault::Fault;
 use crate::joint::JointVector;
@@ -49,6 +50,16 @@ pub struct Controller<T: Real> {
 }
 
 impl<T: Real> Controller<T> {
+    /// What a state has until a change is begun.
+    #[inline(always)]
+    pub(super) fn own(&self) -> Own<'_, T> {
+        Own {
+            levels: &self.levels,
+            compliance: &self.compliance,
+            releases: self.law.limits,
+        }
+    }
+
     /// The arm.
     #[must_use]
     pub fn arm(&self) -> &ArmModel<T> {

@@ -268,7 +268,7 @@ fn observer<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
 
 fn tasks<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
     let ages_s = input.reference.ages_s();
-    data.tasks.watch(controller, ages_s, &data.followed);
+    data.tasks.watch(&controller.own(), ages_s, &data.followed);
     if data.tasks.changing().any() {
         let interval_s = input.measurement.interval_s;
         let met = data.tasks.advance(interval_s, &data.spectrum);
@@ -279,7 +279,7 @@ fn tasks<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut D
 #[inline(never)]
 fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
     data.followed.update(
-        data.tasks.levels(controller),
+        data.tasks.levels(&controller.levels),
         input.reference,
         data.tasks.stale(),
         &data.kinematics,
@@ -290,7 +290,7 @@ fn followed<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mu
 
 fn task_rows<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.rows.update(
-        data.tasks.levels(controller),
+        data.tasks.levels(&controller.levels),
         &data.followed,
         &data.kinematics,
         &data.joints,
@@ -341,7 +341,7 @@ fn constant_posture<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
 #[inline(never)]
 fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.control.update(
-        data.tasks.compliance(controller),
+        data.tasks.compliance(&controller.compliance),
         &data.dynamics,
         &data.rows,
         &data.hierarchy,
@@ -351,7 +351,7 @@ fn control<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Dat
 }
 
 fn spectrum<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let levels = data.tasks.levels(controller);
+    let levels = data.tasks.levels(&controller.levels);
     data.spectrum
         .update(levels, &data.rows, &data.dynamics.cholesky);
 }
@@ -359,7 +359,7 @@ fn spectrum<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Da
 fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.whitened_motion.update(
         &mut data.motion,
-        data.tasks.levels(controller),
+        data.tasks.levels(&controller.levels),
         &data.dynamics.cholesky,
         &data.spectrum,
         &data.joints.dq,
@@ -368,14 +368,14 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let null_force = data.tasks.compliance(controller).force(
+    let null_force = data.tasks.compliance(&controller.compliance).force(
         &data.dynamics,
         &data.rows,
         &data.motion,
         &(data.posture - data.joints.q),
     );
     data.way_out.update(&Straight {
-        levels: data.tasks.levels(controller),
+        levels: data.tasks.levels(&controller.levels),
         bounds: &controller.bounds,
         kinematics: &data.kinematics,
         dynamics: &data.dynamics,
@@ -388,7 +388,7 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         posture: &data.posture,
     });
     data.wish.update(&Ask {
-        levels: data.tasks.levels(controller),
+        levels: data.tasks.levels(&controller.levels),
         bounds: &controller.bounds,
         torque_limit: controller.arm.torque_limit(),
         dynamics: &data.dynamics,
@@ -411,7 +411,7 @@ fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut 
         acceleration: &data.wish.acceleration,
         torque: &data.wish.torque,
         bounds: &data.bounds,
-        levels: data.tasks.levels(controller),
+        levels: data.tasks.levels(&controller.levels),
         dynamics: &data.dynamics,
         rows: &data.rows,
         spectrum: &data.spectrum,

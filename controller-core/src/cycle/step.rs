@@ -46,7 +46,7 @@ impl<T: Real> Controller<T> {
         let dq = zeros();
         reference_of(
             self,
-            state.data.tasks.levels(self),
+            state.data.tasks.levels(&self.levels),
             &JointState { q: *q, dq },
         )
     }
@@ -108,7 +108,7 @@ impl<T: Real> Controller<T> {
             measurement,
             reference,
         };
-        let levels = state.data.tasks.levels(self);
+        let levels = state.data.tasks.levels(&self.levels);
         let admitted = admit(state.fault, &self.arm, levels, self.cycle_s, &input);
         if let Err(fault) = admitted {
             return self.brake(state, &input, fault);

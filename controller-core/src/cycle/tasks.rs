@@ -12,7 +12,6 @@
 //! Whoever is wanted above a level that stands above it falls, is put there and rises: upper
 //! levels stay as they are. A level that is turned round on its way goes back from where it is.
 
-use super::controller::Controller;
 use crate::fault::IndexSet;
 use crate::law::limits::spectrum::Spectrum;
 use crate::law::null_space::Compliance;
@@ -22,6 +21,15 @@ use crate::task::{Clock, Followed, Level, LevelGains, Levels, Order, smoothstep}
 
 /// Bit of the null space beside those of the slots in [`ActiveTasks::changing`].
 pub(super) const NULL_SPACE_BIT: usize = MAX_LEVELS;
+
+/// What is in force until a change is begun: a controller's own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Own<'a, T: Real> {
+    pub levels: &'a Levels<T>,
+    pub compliance: &'a Compliance<T>,
+    /// Whether levels may go.
+    pub releases: bool,
+}
 
 /// How far a level has come, and how fast it comes or goes.
 #[derive(Clone, Copy, Debug)]
@@ -138,22 +146,14 @@ impl<T: Real> ActiveTasks<T> {
 
     /// The levels in force.
     #[inline(always)]
-    pub(super) fn levels<'a>(&'a self, controller: &'a Controller<T>) -> &'a Levels<T> {
-        if self.changed {
-            &self.levels
-        } else {
-            &controller.levels
-        }
+    pub(super) fn levels<'a>(&'a self, own: &'a Levels<T>) -> &'a Levels<T> {
+        if self.changed { &self.levels } else { own }
     }
 
     /// The compliance in force.
     #[inline(always)]
-    pub(super) fn compliance<'a>(&'a self, controller: &'a Controller<T>) -> &'a Compliance<T> {
-        if self.changed {
-            &self.compliance
-        } else {
-            &controller.compliance
-        }
+    pub(super) fn compliance<'a>(&'a self, own: &'a Compliance<T>) -> &'a Compliance<T> {
+        if self.changed { &self.compliance } else { own }
     }
 
     /// Slots on their way to be what is wanted; bit 7, the eighth, is the null space.
@@ -170,26 +170,26 @@ impl<T: Real> ActiveTasks<T> {
         self.stale
     }
 
-    /// The slots that are wanted, highest priority first; those of `controller` where no change
-    /// was begun.
-    pub(super) fn wanted(&self, controller: &Controller<T>) -> Order {
+    /// The slots that are wanted, highest priority first; those of a controller's own levels
+    /// where no change was begun.
+    pub(super) fn wanted(&self, own: &Levels<T>) -> Order {
         if self.changed {
             self.wanted
         } else {
-            controller.levels.order()
+            own.order()
         }
     }
 
     /// From now on apart from those of the controller.
     #[cold]
     #[inline(never)]
-    fn part_from(&mut self, controller: &Controller<T>) {
+    fn part_from(&mut self, own: &Own<'_, T>) {
         if self.changed {
             return;
         }
-        self.wanted = self.wanted(controller);
-        self.levels = controller.levels;
-        self.compliance = controller.compliance;
+        self.wanted = self.wanted(own.levels);
+        self.levels = *own.levels;
+        self.compliance = *own.compliance;
         for fade in &mut self.fades {
             (fade.share, fade.rate) = (T::ONE, T::from_f64(1.0 / CHANGE_S));
         }
@@ -203,9 +203,9 @@ impl<T: Real> ActiveTasks<T> {
     }
 
     /// Rows of all slots that are wanted or still in force but `slot`.
-    pub(super) fn rows_beside(&self, controller: &Controller<T>, slot: usize) -> usize {
-        let wanted = self.wanted(controller);
-        let levels = self.levels(controller);
+    pub(super) fn rows_beside(&self, own: &Own<'_, T>, slot: usize) -> usize {
+        let wanted = self.wanted(own.levels);
+        let levels = self.levels(own.levels);
         let takes = |level: &&Level<T>| {
             level.slot != slot && (wanted.contains(level.slot) || levels.is_in_force(level.slot))
         };
@@ -219,12 +219,12 @@ impl<T: Real> ActiveTasks<T> {
 
     /// A task in a slot, new or on its way out, at a place among the wanted ones.
     #[inline(never)]
-    pub(super) fn add(&mut self, controller: &Controller<T>, level: &Level<T>, at: (usize, T)) {
+    pub(super) fn add(&mut self, own: &Own<'_, T>, level: &Level<T>, at: (usize, T)) {
         let (place, rate) = at;
-        self.part_from(controller);
+        self.part_from(own);
         let slot = level.slot;
         if self.levels.is_in_force(slot) {
-            self.set_gains(controller, slot, &level.gains, T::ONE / rate);
+            self.set_gains(own, slot, &level.gains, T::ONE / rate);
         } else if let Some(own) = self.levels.slot_mut(slot) {
             *own = *level;
             self.slews[slot % MAX_LEVELS].clock.end();
@@ -236,8 +236,8 @@ impl<T: Real> ActiveTasks<T> {
     }
 
     /// The task of a slot goes.
-    pub(super) fn remove(&mut self, controller: &Controller<T>, slot: usize, rate: T) {
-        self.part_from(controller);
+    pub(super) fn remove(&mut self, own: &Own<'_, T>, slot: usize, rate: T) {
+        self.part_from(own);
         self.wanted.remove(slot);
         self.away.remove(slot);
         self.fades[slot % MAX_LEVELS].rate = rate;
@@ -245,8 +245,8 @@ impl<T: Real> ActiveTasks<T> {
     }
 
     /// The wanted slots in another order.
-    pub(super) fn reorder(&mut self, controller: &Controller<T>, order: &Order, rate: T) {
-        self.part_from(controller);
+    pub(super) fn reorder(&mut self, own: &Own<'_, T>, order: &Order, rate: T) {
+        self.part_from(own);
         self.wanted = *order;
         for slot in order.slots() {
             self.fades[slot % MAX_LEVELS].rate = rate;
@@ -257,12 +257,12 @@ impl<T: Real> ActiveTasks<T> {
     /// Other gains of the task of a slot.
     pub(super) fn set_gains(
         &mut self,
-        controller: &Controller<T>,
+        own: &Own<'_, T>,
         slot: usize,
         gains: &LevelGains<T>,
         duration_s: T,
     ) {
-        self.part_from(controller);
+        self.part_from(own);
         let slew = &mut self.slews[slot % MAX_LEVELS];
         (slew.to, slew.clock) = (*gains, Clock::new(duration_s));
         self.changing.insert_if(slot, true);
@@ -271,11 +271,11 @@ impl<T: Real> ActiveTasks<T> {
     /// Another compliance of the null space.
     pub(super) fn set_compliance(
         &mut self,
-        controller: &Controller<T>,
+        own: &Own<'_, T>,
         compliance: &Compliance<T>,
         duration_s: T,
     ) {
-        self.part_from(controller);
+        self.part_from(own);
         self.compliance.make_room_for(compliance);
         let slew = &mut self.null_slew;
         (slew.to, slew.clock) = (*compliance, Clock::new(duration_s));
@@ -303,26 +303,21 @@ impl<T: Real> ActiveTasks<T> {
     #[inline(always)]
     pub(super) fn watch(
         &mut self,
-        controller: &Controller<T>,
+        own: &Own<'_, T>,
         ages_s: &[T; MAX_LEVELS],
         followed: &Followed<T>,
     ) {
-        if self.levels(controller).watched {
-            self.find_stale(controller, ages_s, followed);
+        if self.levels(own.levels).watched {
+            self.find_stale(own, ages_s, followed);
         }
     }
 
     #[inline(never)]
-    fn find_stale(
-        &mut self,
-        controller: &Controller<T>,
-        ages_s: &[T; MAX_LEVELS],
-        followed: &Followed<T>,
-    ) {
+    fn find_stale(&mut self, own: &Own<'_, T>, ages_s: &[T; MAX_LEVELS], followed: &Followed<T>) {
         let (mut stale, mut released) = (IndexSet::NONE, IndexSet::NONE);
-        let wanted = self.wanted(controller);
-        let releases = controller.law.limits;
-        for level in self.levels(controller).all() {
+        let wanted = self.wanted(own.levels);
+        let releases = own.releases;
+        for level in self.levels(own.levels).all() {
             let slot = level.slot;
             let (Some(age_s), Some(of_slot)) = (ages_s.get(slot), followed.of_slots().get(slot))
             else {
@@ -338,7 +333,7 @@ impl<T: Real> ActiveTasks<T> {
         }
         self.stale = stale;
         if released != self.away {
-            self.part_from(controller);
+            self.part_from(own);
             self.changing.0 |= released.0 | self.away.0;
             self.away = released;
         }

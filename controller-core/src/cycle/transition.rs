@@ -135,15 +135,15 @@ impl<T: Real> Controller<T> {
         let tasks = &mut state.data.tasks;
         let duration_s = transition.duration_s;
         let rate = T::ONE / duration_s;
-        let wanted = tasks.wanted(self);
+        let wanted = tasks.wanted(&self.levels);
         match &transition.prepared {
             Prepared::Add { level, place } => {
                 self.check_addition(tasks, level, *place)?;
-                tasks.add(self, level, (*place, rate));
+                tasks.add(&self.own(), level, (*place, rate));
             }
             &Prepared::Remove { slot } => {
                 self.check_taken(&wanted, slot)?;
-                tasks.remove(self, slot, rate);
+                tasks.remove(&self.own(), slot, rate);
             }
             Prepared::Reorder(order) => {
                 if !order.has_the_slots_of(&wanted) {
@@ -152,20 +152,20 @@ impl<T: Real> Controller<T> {
                         wanted,
                     });
                 }
-                tasks.reorder(self, order, rate);
+                tasks.reorder(&self.own(), order, rate);
             }
             Prepared::Gains { slot, gains } => {
                 self.check_taken(&wanted, *slot)?;
-                let all = tasks.levels(self).all();
+                let all = tasks.levels(&self.levels).all();
                 if let Some(level) = all.iter().find(|level| level.slot == *slot) {
                     let axes = level.axes;
                     gains.validate(slot + 1, axes)?;
                     self.check_gains(gains, axes, *slot)?;
-                    tasks.set_gains(self, *slot, &gains_on(gains, axes), duration_s);
+                    tasks.set_gains(&self.own(), *slot, &gains_on(gains, axes), duration_s);
                 }
             }
             Prepared::NullSpace(compliance) => {
-                tasks.set_compliance(self, compliance, duration_s);
+                tasks.set_compliance(&self.own(), compliance, duration_s);
             }
         }
         Ok(())
@@ -175,7 +175,7 @@ impl<T: Real> Controller<T> {
     /// or not.
     #[must_use]
     pub fn order(&self, state: &State<T>) -> Order {
-        state.data.tasks.wanted(self)
+        state.data.tasks.wanted(&self.levels)
     }
 
     fn check_tasks_may_change(&self) -> Result<(), ChangeError> {
@@ -214,8 +214,8 @@ impl<T: Real> Controller<T> {
         level: &Level<T>,
         place: usize,
     ) -> Result<(), ChangeError> {
-        let (wanted, slot) = (tasks.wanted(self), level.slot);
-        let mut leaving = tasks.levels(self).in_order().iter();
+        let (wanted, slot) = (tasks.wanted(&self.levels), level.slot);
+        let mut leaving = tasks.levels(&self.levels).in_order().iter();
         let other = leaving.any(|own| own.slot == slot && !own.tracks_as(level));
         if wanted.contains(slot) || other {
             return Err(ChangeError::SlotTaken { slot });
@@ -226,7 +226,7 @@ impl<T: Real> Controller<T> {
                 levels: wanted.count(),
             });
         }
-        let rows = tasks.rows_beside(self, slot) + level.size;
+        let rows = tasks.rows_beside(&self.own(), slot) + level.size;
         if rows > self.capacity.rows {
             return Err(ChangeError::Rows {
                 rows,

@@ -115,15 +115,9 @@ pub(super) struct RunOptions {
 }
 
 impl RunOptions {
-    /// Runs the motion: the exit code.
-    pub(super) fn run(&self) -> Result<u8, Invalid> {
-        let robot = RobotInterface::from_name(&self.robot)?;
-        self.refuse_options_of_others(robot)?;
-        let scenario = Scenario::find(self.scenario())?;
-        match robot {
-            RobotInterface::Lwr => self.run_lwr(&scenario),
-            RobotInterface::Fci => self.run_fci(&scenario),
-        }
+    /// The robot's interface.
+    pub(super) fn robot(&self) -> Result<RobotInterface, Invalid> {
+        RobotInterface::from_name(&self.robot)
     }
 
     /// The scenario that was asked for, or that of the robot.
@@ -136,7 +130,7 @@ impl RunOptions {
     }
 
     /// Options that mean nothing to a robot are mistakes.
-    fn refuse_options_of_others(&self, robot: RobotInterface) -> Result<(), Invalid> {
+    pub(super) fn refuse_options_of_others(&self, robot: RobotInterface) -> Result<(), Invalid> {
         let shown = |value: Option<f64>| value.map(|value| value.to_string());
         let address = |value: Option<SocketAddr>| value.map(|value| value.to_string());
         let options = [
