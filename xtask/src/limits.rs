@@ -6,7 +6,7 @@ use crate::figures::Figures;
 pub const LIMITS: [(&str, u64); 16] = [
     ("two-level f64: cycle, instructions", 14_400),
     ("two-level f32: cycle, instructions", 12_400),
-    ("case-1 f64: cycle, instructions", 17_200),
+    ("case-1 f64: cycle, instructions", 17_350),
     ("case-1 f32: cycle, instructions", 15_200),
     ("two-level f64: longest cycle, instructions", 22_400),
     ("two-level f32: longest cycle, instructions", 19_700),
@@ -25,7 +25,7 @@ pub const LIMITS: [(&str, u64); 16] = [
         89_500,
     ),
     ("stack bound of the cycle, bytes", 12_288),
-    ("stack bound of the constructor, bytes", 12_288),
+    ("stack bound of the constructor, bytes", 13_400),
 ];
 
 /// Most pivots of a projection: every number of them has to be measured.
@@ -161,8 +161,8 @@ mod tests {
         assert_eq!(exceeded(&figures(9_000, Some(23_201), 1)).len(), 12);
         let lost = exceeded(&figures(9_000, None, 1));
         assert_eq!(lost.len(), 12);
-        assert!(lost[11].ends_with("bytes: none, limit 12288"), "{lost:?}");
-        assert_eq!(exceeded(&figures(9_000, Some(1), 99_501)).len(), 4);
+        assert!(lost[11].ends_with("bytes: none, limit 13400"), "{lost:?}");
+        assert_eq!(exceeded(&figures(9_000, Some(1), 116_001)).len(), 4);
         // Ten instructions are too much of a spread here, on every path.
         let paths = 2 * (PIVOTS as usize + 1);
         assert_eq!(exceeded(&figures(1_000, Some(1), 1)).len(), paths);
