@@ -13,7 +13,7 @@
 //! ```
 //!
 //! Which robot it is, and what it does and reports, is an affair of its
-//! [`Protocol`](crate::protocol::Protocol). In every state a fresh datagram gets one answer if
+//! [`Protocol`]. In every state a fresh datagram gets one answer if
 //! the robot takes any. Only in `Starting`, `Moving`, `Holding` and `Stopping` does an answer
 //! carry torque; where the robot has no stiffness of its own, also behind it, until the robot
 //! has taken over.

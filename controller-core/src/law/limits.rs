@@ -13,6 +13,7 @@
 //! projection  a: the nearest to a* within the bounds, nearest for the upper levels first
 //! ```
 
+mod asked;
 pub mod bounds;
 mod eigen;
 pub mod memory;

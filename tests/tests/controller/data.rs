@@ -136,8 +136,11 @@ fn the_stages_up_to_one_leave_the_others_alone() {
         ]
     }
     let (old, new) = (results(&before), results(&after));
+    // Tasks stay as they are where none is changed.
     let names = Controller::<f64>::EXACT_STAGES.map(|(name, _)| name);
-    for (index, last) in names.into_iter().take(old.len()).enumerate() {
+    let changed = names.into_iter().filter(|name| *name != StageName::Tasks);
+    let names: Vec<_> = changed.collect();
+    for (index, &last) in names.iter().take(old.len()).enumerate() {
         let mut data = before.clone();
         controller.evaluate_until(last, &input(2), &mut data);
         let seen = results(&data);
