@@ -284,6 +284,7 @@ static void steps(void) {
 /* Changes that cannot be, of a controller with one level and a second one that is absent. */
 static void changes(void) {
     static const uint32_t both[2] = {2, 1}, twice[2] = {1, 1};
+    static const double rest[7] = {0.0, 0.5, 0.0, -1.5, 0.5, 1.0, 0.0};
     double stiffness[9] = {100.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 100.0};
     double damping[9] = {20.0, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 0.0, 20.0};
     fresh();
@@ -291,7 +292,7 @@ static void changes(void) {
     settings.levels[1].axes = STRATUM_AXIS_X;
     settings.levels[1].absent = 1;
     EXPECT(STRATUM_OK, stratum_controller_init(&other, &settings));
-    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, q));
+    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, rest));
 
     EXPECT(STRATUM_ERROR_NULL, stratum_level_add(0, &state, &settings, 2, 1, 0.5));
     EXPECT(STRATUM_ERROR_NULL, stratum_level_add(&other, 0, &settings, 2, 1, 0.5));
@@ -342,12 +343,12 @@ static void changes(void) {
     settings.levels[1].axes = STRATUM_AXIS_X;
     settings.levels[1].absent = 1;
     EXPECT(STRATUM_OK, stratum_level_add(&other, &state, &settings, 2, 1, 0.5));
-    EXPECT(STRATUM_OK, stratum_step(&other, &state, q, dq, 0.002, torque));
+    EXPECT(STRATUM_OK, stratum_step(&other, &state, rest, dq, 0.002, torque));
     EXPECT(STRATUM_OK, stratum_status(&state, &status));
     CHECK(status.changing == 3 && status.stale == 0);
     settings.levels[1].absent = 0;
     EXPECT(STRATUM_OK, stratum_controller_init_exact(&other, &settings));
-    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, q));
+    EXPECT(STRATUM_OK, stratum_state_init(&state, &other, rest));
     EXPECT(STRATUM_ERROR_EXACT_LAW, stratum_level_remove(&other, &state, 2, 0.5));
     EXPECT(STRATUM_ERROR_EXACT_LAW, stratum_level_order(&other, &state, both, 2, 0.5));
     fresh();

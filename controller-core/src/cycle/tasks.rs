@@ -359,7 +359,6 @@ impl<T: Real> ActiveTasks<T> {
             let fade = &mut self.fades[slot % MAX_LEVELS];
             fade.advance(paced_s, stays);
             level.activation = smoothstep(fade.share);
-            changing.insert_if(slot, fade.share < T::ONE);
             if stays || fade.share > T::ZERO {
                 place += 1;
             } else {
@@ -374,6 +373,9 @@ impl<T: Real> ActiveTasks<T> {
         for slot in wanted.slots() {
             let waits = !self.levels.is_in_force(slot) && !self.away.contains(slot);
             changing.insert_if(slot, waits);
+        }
+        for level in self.levels.in_order() {
+            changing.insert_if(level.slot, level.activation < T::ONE);
         }
         changing.0 |= self.adjust(interval_s).0;
         self.changing = changing;

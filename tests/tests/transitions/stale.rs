@@ -82,6 +82,13 @@ fn it_goes_while_its_reference_is_stale_and_comes_back() {
     assert_eq!(rows_at(2.9), Some(3));
     assert_eq!(rows_at(3.9), Some(3));
     assert_eq!(rows_at(4.1), Some(5));
+    // Half a second to come, or somewhat more.
+    let until = seen
+        .iter()
+        .filter(|(.., changing, _)| *changing)
+        .map(|(t_s, ..)| *t_s);
+    let until = until.fold(0.0, f64::max);
+    assert!((4.4..4.7).contains(&until), "{until}");
     assert!(
         seen.iter()
             .all(|&(t_s, stale, ..)| stale == (age_s(t_s) > AGE_S))
