@@ -128,6 +128,10 @@ fn replay() -> Result<String, Box<dyn std::error::Error>> {
             let duration_s = if cycle == 2800 { 1.0 } else { 0.5 };
             let transition = controller.transition(&change, duration_s)?;
             controller.begin(&mut state, &transition)?;
+            // A level that comes holds until it has a reference.
+            if let Change::Add { slot, .. } = change {
+                reference.targets_mut()[slot] = Target::Hold;
+            }
         }
         if cycle >= 4000 {
             age_s = f64::from(cycle - 4000) / 512.0;
