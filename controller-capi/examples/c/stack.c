@@ -35,9 +35,9 @@ static const struct {
 } functions[] = {
     {"settings_of_arm", settings_of_arm, 6144},
     {"settings_default", settings_default, 6144},
-    {"settings_text", settings_text, 27648},
-    {"controller_init", controller_init, 20480},
-    {"state_init", state_init, 11264},
+    {"settings_text", settings_text, 30720},
+    {"controller_init", controller_init, 23552},
+    {"state_init", state_init, 17408},
     {"reference_hold", hold, 10240},
     {"reference_get", get, 1024},
     {"reference_set", set, 1024},
