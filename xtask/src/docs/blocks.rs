@@ -18,7 +18,7 @@ pub struct Block {
     pub line: usize,
     /// Its commands, in their order.
     pub commands: Vec<Command>,
-    /// What a block of `text` below shows as the output of all of them.
+    /// What a block of `text` below, in the same section, shows as the output of all of them.
     pub output: Vec<String>,
 }
 
@@ -76,6 +76,12 @@ pub fn fences(document: &str) -> Vec<Fence<'_>> {
 /// The blocks of commands of a document.
 pub fn blocks(document: &str) -> Vec<Block> {
     let fences = fences(document);
+    let lines: Vec<&str> = document.lines().collect();
+    // Between the closing fence of one and the opening fence of the next.
+    let same_section = |above: &Fence<'_>, below: &Fence<'_>| {
+        let between = &lines[above.line + above.lines.len()..below.line - 1];
+        !between.iter().any(|line| line.starts_with('#'))
+    };
     let mut blocks = Vec::new();
     for (number, fence) in fences.iter().enumerate() {
         let commands = match fence.language {
@@ -84,7 +90,9 @@ pub fn blocks(document: &str) -> Vec<Block> {
             _ => continue,
         };
         let below = fences.get(number + 1);
-        let shown = below.filter(|it| fence.language == "sh" && it.language == "text");
+        let shown = below.filter(|it| {
+            fence.language == "sh" && it.language == "text" && same_section(fence, it)
+        });
         blocks.push(Block {
             line: fence.line,
             commands,
@@ -175,6 +183,14 @@ mod tests {
             (&first.output[..], last.output.len()),
             (&["x".to_string()][..], 0)
         );
+    }
+
+    #[test]
+    fn what_another_section_shows_is_no_output() {
+        for (between, output) in [("", 1), ("so:\n", 1), ("## Next\n", 0)] {
+            let document = format!("```sh\nrun\n```\n{between}```text\nx\n```\n");
+            assert_eq!(blocks(&document)[0].output.len(), output, "{between}");
+        }
     }
 
     #[test]
