@@ -157,7 +157,7 @@ impl Audit {
         self.mass = worse(self.mass, mass);
         if mass != Agreement::NotSent {
             let share = (theirs - ours.mass_matrix).amax() / scale;
-            self.mass_share = self.mass_share.larger(share);
+            self.mass_share = self.mass_share.most(share);
         }
     }
 
@@ -178,7 +178,7 @@ impl Audit {
         let mut jacobian = Agreement::Agrees;
         for (row, ours) in theirs.iter().zip(linear.iter().chain(&angular)) {
             let error = (row - ours).amax();
-            self.jacobian_error = self.jacobian_error.larger(error);
+            self.jacobian_error = self.jacobian_error.most(error);
             // One row of zeros is a row like any other.
             jacobian = match judge(row.as_slice(), ours.as_slice(), JACOBIAN_TOLERANCE) {
                 Agreement::NotSent => worse(jacobian, Agreement::Differs),
@@ -207,7 +207,7 @@ impl Audit {
             let ours = at(unit) - origin;
             for (row, ours) in said.rotation.iter().zip(&ours) {
                 let said = row.get(axis).copied().unwrap_or(0.0);
-                error = error.larger((said - ours).magnitude());
+                error = error.most((said - ours).magnitude());
             }
         }
         let pose = match error <= POSE_TOLERANCE {
@@ -215,7 +215,7 @@ impl Audit {
             false => Agreement::Differs,
         };
         self.pose = Some(self.pose.map_or(pose, |known| worse(known, pose)));
-        self.pose_error = self.pose_error.larger(error);
+        self.pose_error = self.pose_error.most(error);
     }
 
     /// Whether nothing contradicts the controller's model.
@@ -275,7 +275,7 @@ fn judge(theirs: &[f64], ours: &[f64], tolerance: f64) -> Agreement {
     let largest = |sign: f64| {
         let pairs = theirs.iter().zip(ours);
         pairs.fold(0.0f64, |worst, (a, b)| {
-            worst.larger((a - sign * b).magnitude())
+            worst.most((a - sign * b).magnitude())
         })
     };
     if largest(1.0) <= tolerance {

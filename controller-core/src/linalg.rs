@@ -73,7 +73,7 @@ impl<T: Real> Cholesky<T> {
                     column[i] -= l[(i, k)] * factor;
                 }
             }
-            let root = column[j].larger(floor).square_root();
+            let root = column[j].most(floor).square_root();
             let inverse = T::ONE / root;
             inverse_diagonal[j] = inverse;
             l[(j, j)] = root;

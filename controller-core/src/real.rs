@@ -40,7 +40,7 @@ pub trait Real:
     fn sine_cosine(self) -> (Self, Self);
     /// `exp(-x)` for `self` >= 0: within 2 units in the last place up to where
     /// the result leaves the normal numbers; there it stays at about 1e-304
-    /// (`f64`) or 1e-37 (`f32`). Negative input counts as 0.
+    /// (`f64`) or 1e-37 (`f32`). Negative input and NaN count as 0.
     fn exp_negative(self) -> Self;
     /// Largest integer not above `self`, for |x| < 2^31.
     fn floor_small(self) -> Self;
@@ -50,8 +50,8 @@ pub trait Real:
     fn with_sign_of(self, sign: Self) -> Self;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
-    /// The larger of two numbers, the other one where one is NaN; of two zeros either: one
-    /// instruction on a Cortex-M7, for what does not depend on the sign of a zero.
+    /// The larger of two numbers: `other`, which is never NaN, where `self` is. Of two zeros either:
+    /// one instruction on every machine, for what does not depend on the sign of a zero.
     fn most(self, other: Self) -> Self;
     /// The smaller one, likewise.
     fn least(self, other: Self) -> Self;
@@ -60,11 +60,6 @@ pub trait Real:
     fn limited(self, low: Self, high: Self) -> Self {
         let above = if self < low { low } else { self };
         if above > high { high } else { above }
-    }
-
-    /// The larger of two numbers; `other` where `self` is NaN.
-    fn larger(self, other: Self) -> Self {
-        if self > other { self } else { other }
     }
 }
 
@@ -176,7 +171,7 @@ macro_rules! real {
 
             #[inline(always)]
             fn exp_negative(self) -> Self {
-                let x = Real::limited(self, 0.0, $exp_range);
+                let x = self.most(0.0).least($exp_range);
                 let shifted = x * -core::$float::consts::LOG2_E + $round;
                 let k = shifted - $round;
                 let r = (-x - k * $l1) - k * $l2;
@@ -209,12 +204,24 @@ macro_rules! real {
 
             #[inline(always)]
             fn most(self, other: Self) -> Self {
-                self.max(other)
+                if cfg!(fpu) {
+                    self.max(other)
+                } else if self > other {
+                    self
+                } else {
+                    other
+                }
             }
 
             #[inline(always)]
             fn least(self, other: Self) -> Self {
-                self.min(other)
+                if cfg!(fpu) {
+                    self.min(other)
+                } else if self < other {
+                    self
+                } else {
+                    other
+                }
             }
         }
     };
@@ -351,6 +358,6 @@ mod tests {
         }
         assert_eq!(Real::limited(5.0f32, -1.0, 1.0), 1.0);
         assert!(Real::limited(f64::NAN, -1.0, 1.0).is_nan());
-        assert_eq!(Real::larger(f64::NAN, 2.0), 2.0);
+        assert_eq!(Real::most(f64::NAN, 2.0), 2.0);
     }
 }

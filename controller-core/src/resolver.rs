@@ -226,7 +226,7 @@ impl<T: Real> Resolver<T> {
         for i in 0..DOF {
             let share = dq[i].magnitude() / speeds[i];
             saturated.insert_if(i, share > T::ONE);
-            excess = excess.larger(share);
+            excess = excess.most(share);
         }
         let dq = dq * (T::ONE / excess);
         for i in 0..DOF {

@@ -38,7 +38,7 @@ impl<T: Real> Brake<T> {
 pub(super) fn next<T: Real>(mode: Mode, dq: &JointVector<T>) -> Mode {
     let mut fastest = T::ZERO;
     for speed in dq {
-        fastest = fastest.larger(speed.magnitude());
+        fastest = fastest.most(speed.magnitude());
     }
     let limit = match mode {
         Mode::Resting => MOVING_SPEED,

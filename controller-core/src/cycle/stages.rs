@@ -253,7 +253,7 @@ fn holding_torque<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &
     let (gravity, limit) = (&data.dynamics.gravity, controller.arm.torque_limit());
     if all_finite(gravity) {
         for i in 0..DOF {
-            data.holding_torque[i] = gravity[i].limited(-limit[i], limit[i]);
+            data.holding_torque[i] = gravity[i].most(-limit[i]).least(limit[i]);
         }
     }
 }

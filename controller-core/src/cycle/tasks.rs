@@ -107,7 +107,7 @@ impl<T: Real> Pace<T> {
         let mut fastest = T::from_f64(1e-9);
         for (now, before) in nearness.iter().zip(&self.nearness) {
             if *now > low && *now < high {
-                fastest = fastest.larger((*now - *before).magnitude());
+                fastest = fastest.most((*now - *before).magnitude());
             }
         }
         let allowed = self.share * T::from_f64(PACE) / fastest;
@@ -433,7 +433,7 @@ impl<T: Real> ActiveTasks<T> {
                 changing.insert_if(level.slot, slew.clock.runs());
             }
             level.adjust(&gains, above);
-            above = above.larger(level.activation);
+            above = above.most(level.activation);
             fades |= level.activation < T::ONE;
         }
         self.levels.fades = fades;

@@ -114,7 +114,7 @@ fn bounded<T: Real>(
 #[inline(never)]
 fn too_long<T: Real>(quantity: Quantity, index: u8, vector: &Vector3<T>, most: T) -> Fault {
     let vector = vector.map(T::to_f64);
-    let largest = vector.fold(0.0, |largest: f64, x| largest.larger(x.magnitude()));
+    let largest = vector.fold(0.0, |largest: f64, x| largest.most(x.magnitude()));
     let scaled = vector / largest;
     let length = if largest.finite() {
         largest * scaled.dot(&scaled).square_root()

@@ -61,8 +61,8 @@ impl<T: Real> Allocation<T> {
         for index in 0..DOF {
             let (demanded, last) = (demand.0[index], self.torque[index]);
             let (limit, step) = (limits.limit[index], limits.step[index] + free);
-            let cut = demanded.limited(-limit, limit);
-            let torque = cut.limited(last - step, last + step);
+            let cut = demanded.most(-limit).least(limit);
+            let torque = cut.most(last - step).least(last + step);
             self.torque[index] = torque;
             self.saturated.0 |= u8::from(cut != demanded) << index;
             self.rate_limited.0 |= u8::from(torque != cut) << index;

@@ -154,7 +154,7 @@ mod tests {
                 return false;
             }
             if cycle > 190_000 {
-                swing = x.magnitude().larger(swing);
+                swing = x.magnitude().most(swing);
             }
         }
         swing < 0.5

@@ -148,9 +148,9 @@ impl<T: Real> LevelFilters<T> {
     /// d and p \[kg\] of a direction of mobility z \[1/kg\].
     #[inline(always)]
     pub fn of(&self, z: T) -> [T; 2] {
-        let z = z.larger(T::ZERO);
+        let z = z.most(T::ZERO);
         // What is released is degraded, so that one inverse does for both.
-        let inverse = T::ONE / z.larger(self.keep.threshold);
+        let inverse = T::ONE / z.most(self.keep.threshold);
         [self.drive.of(z, inverse), self.keep.of(z, inverse)]
     }
 
@@ -164,7 +164,7 @@ impl<T: Real> LevelFilters<T> {
     /// rho of a level, by the least mobility z \[1/kg\] of its directions.
     #[inline(always)]
     pub fn release(&self, z: T) -> T {
-        let below = (T::ONE - z * self.inverse_release).larger(T::ZERO);
+        let below = (T::ONE - z * self.inverse_release).most(T::ZERO);
         below * below
     }
 
@@ -177,7 +177,7 @@ impl<T: Real> LevelFilters<T> {
     /// Largest command \[m/s2\] along a direction of mobility z \[1/kg\].
     #[inline(always)]
     pub fn most_command(&self, z: T) -> T {
-        let lost = (T::ONE - z * self.free).larger(T::from_f64(1e-9));
+        let lost = (T::ONE - z * self.free).most(T::from_f64(1e-9));
         self.lost_command / lost
     }
 
@@ -186,7 +186,7 @@ impl<T: Real> LevelFilters<T> {
     pub fn error_share(&self, error: &Vector3<T>) -> T {
         let speed = self.approach * error;
         let most = self.error_speed;
-        most / speed.dot(&speed).square_root().larger(most)
+        most / speed.dot(&speed).square_root().most(most)
     }
 }
 

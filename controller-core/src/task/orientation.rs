@@ -77,7 +77,7 @@ pub fn of_rotation<T: Real>(r: &Matrix3<T>) -> Quaternion<T> {
         }
     }
     // The largest divisor is four times the square of the largest component, at least 1.
-    Quaternion::from(best) * (T::HALF / largest.larger(T::HALF).square_root())
+    Quaternion::from(best) * (T::HALF / largest.most(T::HALF).square_root())
 }
 
 /// The orientation of a frame that is turned by `turn` in a link, whose DH frame is turned by

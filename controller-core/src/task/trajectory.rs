@@ -81,7 +81,7 @@ impl<T: Real> Trajectory<T> {
     /// refuses as implausible.
     #[must_use]
     pub fn sample(&self, origin: &Vector3<T>, t_s: T) -> Target<T> {
-        let t_s = t_s.larger(T::ZERO);
+        let t_s = t_s.most(T::ZERO);
         match *self {
             Self::Hold => Target::position(*origin),
             Self::Move { by, duration_s } => {
@@ -140,7 +140,7 @@ impl<T: Real> Rotation<T> {
     /// `origin`. Time before the start counts as the start.
     #[must_use]
     pub fn sample(&self, origin: &Quaternion<T>, t_s: T) -> Target<T> {
-        let t_s = t_s.larger(T::ZERO);
+        let t_s = t_s.most(T::ZERO);
         match *self {
             Self::Hold => Target::orientation(*origin),
             Self::Swing {

@@ -53,10 +53,10 @@ pub(super) fn cut_together<T: Real>(
         let (of_own, limit) = (asked(direction), most(direction));
         let mut squared = T::ZERO;
         for other in directions.iter().take(3) {
-            let share = asked(other).command / most(other).larger(limit);
+            let share = asked(other).command / most(other).most(limit);
             squared += share * share;
         }
-        let excess = squared.square_root().larger(T::ONE);
+        let excess = squared.square_root().most(T::ONE);
         is_cut |= excess > T::ONE;
         *force = direction.drive * (of_own.command / excess) - direction.keep * of_own.own;
     }

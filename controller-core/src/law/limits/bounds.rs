@@ -88,7 +88,7 @@ impl<T: Real> JointBounds<T> {
         let (braking, turn) = (self.braking[joint], self.turn[joint]);
         let (gain, near) = (self.speed_gain[joint], self.position_gain);
         let beyond = (braking + braking) * (distance - turn);
-        let root = beyond.larger(T::from_f64(1e-12)).square_root();
+        let root = beyond.most(T::from_f64(1e-12)).square_root();
         let linear = distance < turn + turn;
         let allowed = if linear { near * distance } else { root };
         let slope = if linear { near } else { braking / root };

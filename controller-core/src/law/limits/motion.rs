@@ -58,7 +58,10 @@ impl<T: Real> WhitenedMotion<T> {
         spectrum: &Spectrum<T>,
     ) {
         // Of the levels that are still to come y^T (s - V) of their directions.
-        *momentum = self.along;
+        let used = momentum.iter_mut().zip(&self.along);
+        for (rest, along) in used.take(spectrum.directions().len()) {
+            *rest = *along;
+        }
         for level in levels.in_order().iter().rev() {
             let (directions, rows) = (spectrum.of(level), level.rows());
             let mut of_level = [T::ZERO; 3];

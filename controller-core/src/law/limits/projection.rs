@@ -156,7 +156,7 @@ impl<T: Real> Projection<T> {
             let share = smoothed.unwrap_or(T::ZERO) * softening;
             let soft = (T::ONE + share * share) * level.filters.stiff_cubed;
             for direction in wished.spectrum.of(level) {
-                let z = direction.mobility.larger(T::ZERO);
+                let z = direction.mobility.most(T::ZERO);
                 let held = level.activation * z * z / (z * z * z + soft);
                 tableau.stiffen(cholesky, &direction.along, held);
             }
@@ -305,7 +305,7 @@ impl<T: Real> Search<T> {
         let (mut most, mut ways) = (T::ONE, [T::ZERO; DOF]);
         for i in 0..DOF {
             ways[i] = row[i] * step * self.held[i] / self.point[i];
-            most = most.most(ways[i]);
+            most = ways[i].most(most);
         }
         let mut dropped = NONE;
         if most > T::ONE {

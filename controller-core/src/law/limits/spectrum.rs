@@ -154,7 +154,7 @@ impl<T: Real> Spectrum<T> {
         let [degraded, released] = filters.lost(least);
         self.degraded.insert_if(level.slot, degraded);
         self.released.insert_if(level.slot, released);
-        self.release = self.release.larger(release);
+        self.release = self.release.most(release);
     }
 
     /// How near each direction is to have a limit of its command, at 1; 0 behind the last one.

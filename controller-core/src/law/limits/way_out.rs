@@ -180,8 +180,8 @@ impl<T: Real> WayOut<T> {
             for other in above {
                 other.take_from(&mut own.row);
             }
-            let squared = own.row.dot(&own.row).larger(T::from_f64(1e-24));
-            own.weight = direction.keep * direction.mobility.larger(T::ZERO) / squared;
+            let squared = own.row.dot(&own.row).most(T::from_f64(1e-24));
+            own.weight = direction.keep * direction.mobility.most(T::ZERO) / squared;
             own.take_from(&mut left);
         }
         left
@@ -213,7 +213,7 @@ impl<T: Real> WayOut<T> {
         let forces = arm.residual + arm.null_force;
         let others = self.acceleration.dot(&forces) - self.whitened.dot(&arm.motion.null) * damping;
         let others = others / self.whitened.dot(&self.whitened);
-        let opposing = (-others * T::ONE.with_sign_of(side)).larger(T::ZERO);
+        let opposing = (-others * T::ONE.with_sign_of(side)).most(T::ZERO);
         side * (T::from_f64(BEND_ACCELERATION) + opposing)
     }
 }
@@ -339,8 +339,8 @@ fn side_of<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>, bent: T) -> 
             } else {
                 (up, down)
             };
-            back = back.least(behind / speed.magnitude());
-            ahead = ahead.least(before / speed.magnitude());
+            back = (behind / speed.magnitude()).least(back);
+            ahead = (before / speed.magnitude()).least(ahead);
             wanted += (arm.posture[i] - straight) * speed;
             weight += speed * speed;
         }

@@ -86,7 +86,7 @@ fn torque_share<T: Real>(
         // The room on the side of the torque, and the torque, both times its size.
         let size = torque[i].magnitude().most(least);
         let room = limit[i] * size - before[i] * torque[i];
-        share = share.least(room.most(T::ZERO) / (size * size));
+        share = (room.most(T::ZERO) / (size * size)).least(share);
     }
     share
 }
@@ -168,7 +168,7 @@ impl<T: Real> Wish<T> {
         let mut most = T::ONE;
         for i in 0..DOF {
             let of_joint = (acceleration[i] * ask.bounds.inverse_acceleration[i]).magnitude();
-            most = most.most(of_joint);
+            most = of_joint.most(most);
         }
         let mut share = T::ONE / most;
         let torque = cholesky.lower_times(stage);

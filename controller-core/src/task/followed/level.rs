@@ -194,7 +194,7 @@ impl<T: Real> FollowedLevel<T> {
             let speed = T::from_f64(kind.pick(JOIN_SPEED));
             let distance = axes.select(&way);
             let duration_s =
-                (distance.dot(&distance).square_root() / speed).larger(T::from_f64(JOIN_S));
+                (distance.dot(&distance).square_root() / speed).most(T::from_f64(JOIN_S));
             let start = [
                 way,
                 until_now.velocity - velocity,

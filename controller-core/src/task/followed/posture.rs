@@ -64,10 +64,10 @@ impl<T: Real> FollowedPosture<T> {
         self.from = before - wanted + self.offset();
         let mut largest = T::ZERO;
         for value in &self.from {
-            largest = largest.larger(value.magnitude());
+            largest = largest.most(value.magnitude());
         }
         let [_, speed] = JOIN_SPEED.map(T::from_f64);
-        self.clock = Clock::new((largest / speed).larger(T::from_f64(JOIN_S)));
+        self.clock = Clock::new((largest / speed).most(T::from_f64(JOIN_S)));
     }
 
     /// What is followed less what is wanted \[rad\].
