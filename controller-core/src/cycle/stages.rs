@@ -368,6 +368,7 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 
 #[inline(never)]
 fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
+    let levels = data.tasks.levels(&controller.levels);
     let null_force = data.tasks.compliance(&controller.compliance).force(
         &data.dynamics,
         &data.rows,
@@ -375,7 +376,7 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         &(data.posture - data.joints.q),
     );
     data.way_out.update(&Straight {
-        levels: data.tasks.levels(&controller.levels),
+        levels,
         bounds: &controller.bounds,
         kinematics: &data.kinematics,
         dynamics: &data.dynamics,
@@ -388,7 +389,7 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         posture: &data.posture,
     });
     data.wish.update(&Ask {
-        levels: data.tasks.levels(&controller.levels),
+        levels,
         bounds: &controller.bounds,
         torque_limit: controller.arm.torque_limit(),
         dynamics: &data.dynamics,
