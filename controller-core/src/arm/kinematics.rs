@@ -193,8 +193,18 @@ impl<T: Real> Kinematics<T> {
             row[i] = z_b * lever_c - z_c * lever_b;
             rate[i] = (dz_b * lever_c - dz_c * lever_b) + (z_b * lever_rate_c - z_c * lever_rate_b);
         }
-        cut(link, row);
-        cut(link, rate);
+        self.cut(link, row);
+        self.cut(link, rate);
+    }
+
+    /// Joints behind `link` do not move it.
+    #[inline(always)]
+    fn cut(&self, link: Link, row: &mut JointVector<T>) {
+        // The base does not turn; as a number, because constant zeros are written by a call.
+        let zero = self.angular_velocity[0][0];
+        for i in link.number()..DOF {
+            row[i] = zero;
+        }
     }
 
     /// Orientation and angular velocity of a link.
@@ -234,16 +244,8 @@ impl<T: Real> Kinematics<T> {
         rate: &mut JointVector<T>,
     ) {
         (*row, *rate) = (self.axis[axis % 3], self.axis_rate[axis % 3]);
-        cut(link, row);
-        cut(link, rate);
-    }
-}
-
-/// Joints behind `link` do not move it.
-#[inline(always)]
-fn cut<T: Real>(link: Link, row: &mut JointVector<T>) {
-    for i in link.number()..DOF {
-        row[i] = T::ZERO;
+        self.cut(link, row);
+        self.cut(link, rate);
     }
 }
 
