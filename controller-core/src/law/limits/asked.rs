@@ -1,4 +1,5 @@
-//! What a level asks for along its directions, and how that is cut where levels come and go.
+//! What a level asks for along its directions, and how that is cut where levels come and go, or have
+//! more rows than there are joints.
 
 use super::spectrum::Direction;
 use crate::joint::JointVector;

@@ -222,7 +222,8 @@ impl<T: Real> Wish<T> {
             *force = direction.drive * cut - direction.keep * asked.own;
             *compensated = asked.kept;
         }
-        if ask.levels.fades {
+        // With more rows than joints some direction is always lost, and turns as it likes.
+        if ask.levels.fades | (ask.spectrum.directions().len() > DOF) {
             // By copies: what is pointed to could not stay in registers where nothing fades.
             let residual = self.residual;
             let asked = move |direction: &Direction<T>| {
