@@ -18,8 +18,8 @@
 # - a cycle or a stage is more than 2 % above the committed figure,
 # - a cycle is above its limit below, whatever is committed,
 # - a cycle of the FR3, whose links have lengths a, is more than 4 % above that of the LWR,
-# - the counts of a cycle differ by 0.5 % or more between the states of a path, by 3 % or more where a
-#   level is released: which one it is, and whether it is stuck, is within the path.
+# - the counts of a cycle differ by 0.5 % or more between the states of a path, by 3 % or more where
+#   directions get lost: of which levels, and whether one is stuck, is within the path.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -71,7 +71,7 @@ awk '
   $2 == "fault" { faults++; next }
   {
     add($1 " " $2)
-    if ($2 ~ /^(idle|released|bent|pivots)/) add($1 " step")
+    if ($2 ~ /^(idle|limited|released|bent|pivots)/) add($1 " step")
   }
   function add(key) {
     if (!(key in min)) { order[++n] = key; min[key] = max[key] = $3 }
@@ -100,7 +100,7 @@ while read -r case stage max min count; do
   printf '%-30s %-15s %8d %8d %8s %7d\n' "$case" "$stage" "$max" "$min" "$spread" "$count"
   allowed=
   [[ ! "$stage" =~ ^(idle|pivots|resolver) ]] || allowed=0.5
-  [[ ! "$stage" =~ ^(released|bent) ]] || allowed=3
+  [[ ! "$stage" =~ ^(limited|released|bent) ]] || allowed=3
   if [ -n "$allowed" ] && awk "BEGIN { exit !($spread >= $allowed) }"; then
     fails "$case $stage: spread $spread %, must be below $allowed %: the count depends on the data"
   fi

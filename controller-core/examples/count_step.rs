@@ -29,19 +29,25 @@ use controller_core::{
     Task, TaskGains, TaskSet,
 };
 
-/// What decides how long a cycle is: whether a level is released, whether the arm is bent for it,
-/// and the pivots of the projection.
-fn path(status: &Status, bends: bool) -> String {
+/// What decides how long a cycle is: whether commands are limited near lost directions, whether a
+/// level is released, whether the arm is bent for it, and the pivots of the projection.
+fn path(status: &Status, data: &Data<impl Real>) -> String {
     let pivots = match status.pivots {
         0 => "idle".into(),
         pivots => format!("pivots-{pivots}"),
     };
-    match (status.fault, status.released.any(), bends) {
-        (Some(_), _, _) => "fault".into(),
-        (None, false, _) => pivots,
-        (None, true, false) => format!("released-{pivots}"),
-        (None, true, true) => format!("bent-{pivots}"),
-    }
+    let way = if status.fault.is_some() {
+        return "fault".into();
+    } else if data.way_out.bends() {
+        "bent-"
+    } else if status.released.any() {
+        "released-"
+    } else if data.spectrum.limits_commands {
+        "limited-"
+    } else {
+        ""
+    };
+    format!("{way}{pivots}")
 }
 
 /// Whole cycles: each state is preceded by one that is not counted apart, so that
@@ -64,8 +70,7 @@ fn steps<T: Real>(case: &Case<T>, inputs: &[Input]) {
             black_box(&measurement),
             black_box(&reference),
         );
-        let bends = state.data().way_out.bends();
-        println!("{} {}", case.name, path(&step.status, bends));
+        println!("{} {}", case.name, path(&step.status, state.data()));
         black_box(step);
     }
 }

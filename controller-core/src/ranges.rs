@@ -166,6 +166,10 @@ pub const BEND_TOWARDS: f64 = 0.0175;
 /// An arm that is bent twice so far to the side that is not preferred goes on there \[rad\].
 pub const BEND_PREFERRED: f64 = 0.0044;
 
+/// c: share of what it would give by itself that a direction of a level below the first gives at
+/// bounds of joints, at least.
+pub const GIVE_BELOW: f64 = 0.003;
+
 /// dev0 \[m/s2\]: a level that the bounds of the joints disturb by so much gives way twice as far.
 pub const SOFTENING_DISTURBANCE: f64 = 2.0;
 

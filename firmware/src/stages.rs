@@ -63,9 +63,10 @@ pub const PIVOT_COUNTS: usize = PIVOTS as usize + 1;
 pub struct Survey {
     /// Full cycle: checks, all stages and record.
     pub cycle: Extremes,
-    /// The same by what decides on its path: whether a level is released, then whether the arm is
-    /// bent for it as well, and the pivots of the projection.
-    pub paths: [[Extremes; PIVOT_COUNTS]; 3],
+    /// The same by what decides on its path: whether commands have a limit near lost directions, then
+    /// whether a level is released as well, then whether the arm is bent for it, and the pivots of
+    /// the projection.
+    pub paths: [[Extremes; PIVOT_COUNTS]; 4],
     /// The stages alone, in the order of [`Controller::STAGES`].
     pub stages: [Extremes; STAGE_COUNT],
     /// Cycles with a fault, with a torque that was cut, with a level released.
@@ -132,7 +133,7 @@ pub fn survey<T: Number>(
     let empty = overhead(clock);
     let mut survey = Survey {
         cycle: Extremes::NONE,
-        paths: [[Extremes::NONE; PIVOT_COUNTS]; 3],
+        paths: [[Extremes::NONE; PIVOT_COUNTS]; 4],
         stages: [Extremes::NONE; STAGE_COUNT],
         faults: 0,
         saturated: 0,
@@ -164,10 +165,10 @@ pub fn survey<T: Number>(
         let count = count.saturating_sub(empty);
         survey.cycle.add(count, index);
         let (released, pivots) = (step.status.released.any(), step.status.pivots);
-        let bent = rig.state.data().way_out.bends();
-        let paths = survey
-            .paths
-            .get_mut(usize::from(released) + usize::from(bent));
+        let data = rig.state.data();
+        let (limited, bent) = (data.spectrum.limits_commands, data.way_out.bends());
+        let way = usize::from(limited) + usize::from(released) + usize::from(bent);
+        let paths = survey.paths.get_mut(way);
         if let Some(path) = paths.and_then(|paths| paths.get_mut(usize::from(pivots))) {
             path.add(count, index);
         }

@@ -71,14 +71,44 @@ pub struct Cost {
     pub worst: String,
 }
 
+/// What directions get lost, and what is done about it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Way {
+    /// None.
+    #[default]
+    Free,
+    /// One is nearly lost: commands have a limit.
+    Limited,
+    /// A level is released.
+    Released,
+    /// The arm is bent for it.
+    Bent,
+}
+
+impl Way {
+    fn of(number: u64) -> Option<Self> {
+        [Self::Free, Self::Limited, Self::Released, Self::Bent]
+            .get(usize::try_from(number).ok()?)
+            .copied()
+    }
+
+    /// Behind the name of a cycle.
+    fn text(self) -> &'static str {
+        match self {
+            Self::Free => "",
+            Self::Limited => ", commands limited",
+            Self::Released => ", a level released",
+            Self::Bent => ", the arm bent for a released level",
+        }
+    }
+}
+
 /// What decides how long a cycle is, and how long it then is \[instructions\].
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Path {
-    /// Whether a level is released.
-    pub released: bool,
-    /// Whether the arm is bent for it.
-    #[serde(default)]
-    pub bent: bool,
+    /// What directions get lost.
+    pub way: Way,
     /// Pivots of the projection; without any it is not run.
     pub pivots: u64,
     /// How many inputs take it.
@@ -115,17 +145,12 @@ pub struct Stack {
 impl Path {
     /// By what decides on it.
     pub fn name(&self) -> String {
-        let cycle = match (self.released, self.pivots) {
-            (_, 0) => "cycle".into(),
-            (_, 1) => "cycle with 1 pivot".into(),
-            (_, pivots) => format!("cycle with {pivots} pivots"),
+        let cycle = match self.pivots {
+            0 => "cycle".into(),
+            1 => "cycle with 1 pivot".into(),
+            pivots => format!("cycle with {pivots} pivots"),
         };
-        let released = match (self.released, self.bent) {
-            (false, _) => "",
-            (true, false) => ", a level released",
-            (true, true) => ", the arm bent for a released level",
-        };
-        format!("{cycle}{released}")
+        format!("{cycle}{}", self.way.text())
     }
 }
 
@@ -135,15 +160,9 @@ impl Controller {
         format!("{} {}", self.experiment, self.precision)
     }
 
-    /// The path without pivots on which the arm is bent.
-    pub fn bent(&self) -> Option<&Path> {
-        self.paths.iter().find(|path| path.bent && path.pivots == 0)
-    }
-
-    /// A path on which the arm is not bent, where an input took it.
-    pub fn path(&self, released: bool, pivots: u64) -> Option<&Path> {
-        let is_it =
-            |path: &&Path| (path.released, path.bent, path.pivots) == (released, false, pivots);
+    /// A path, where an input took it.
+    pub fn path(&self, way: Way, pivots: u64) -> Option<&Path> {
+        let is_it = |path: &&Path| (path.way, path.pivots) == (way, pivots);
         self.paths.iter().find(is_it)
     }
 }
@@ -215,8 +234,7 @@ impl Figures {
                     }
                     ("path", &[way, pivots, inputs, min, max]) => {
                         controller.paths.push(Path {
-                            released: number(way)? > 0,
-                            bent: number(way)? > 1,
+                            way: Way::of(number(way)?)?,
                             pivots: number(pivots)?,
                             inputs: number(inputs)?,
                             min: number(min)?,

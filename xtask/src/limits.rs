@@ -1,6 +1,6 @@
 //! Limits that hold whatever the committed figures say.
 
-use crate::figures::Figures;
+use crate::figures::{Figures, Way};
 
 /// Ends of names of [`Figures::bounded`], and the most that each of those figures may be.
 pub const LIMITS: [(&str, u64); 16] = [
@@ -34,8 +34,8 @@ const PIVOTS: u64 = 12;
 /// Smallest to largest instruction count of a path: a spread below 0.5 %.
 const SPREAD_PER_MILLE: u64 = 5;
 
-/// The same with a level released: which one it is, and whether it is stuck, is within the path.
-const SPREAD_RELEASED_PER_MILLE: u64 = 30;
+/// The same where directions get lost: of which levels, and whether one is stuck, is within the path.
+const SPREAD_LOST_PER_MILLE: u64 = 30;
 
 /// One line per figure that is beyond its limit, or that is not there.
 pub fn exceeded(figures: &Figures) -> Vec<String> {
@@ -66,10 +66,9 @@ pub fn exceeded(figures: &Figures) -> Vec<String> {
         let (of, stack) = (controller.name(), &controller.stack);
         for path in &controller.paths {
             let (name, min, max) = (path.name(), path.min, path.max);
-            let allowed = if path.released {
-                SPREAD_RELEASED_PER_MILLE
-            } else {
-                SPREAD_PER_MILLE
+            let allowed = match path.way {
+                Way::Free => SPREAD_PER_MILLE,
+                _ => SPREAD_LOST_PER_MILLE,
             };
             if 1000 * (max - min) >= allowed * min {
                 let percent = allowed as f64 / 10.0;
@@ -79,7 +78,7 @@ pub fn exceeded(figures: &Figures) -> Vec<String> {
             }
         }
         for pivots in 0..=PIVOTS {
-            if controller.path(false, pivots).is_none() {
+            if controller.path(Way::Free, pivots).is_none() {
                 lines.push(format!("{of}: no input takes {pivots} pivots"));
             }
         }

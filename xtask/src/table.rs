@@ -1,6 +1,6 @@
 //! docs/timing.md from the figures; timing.md beside this file has its text.
 
-use crate::figures::{Controller, Figures, Path, Stage};
+use crate::figures::{Controller, Figures, Path, Stage, Way};
 use crate::limits::LIMITS;
 
 /// Core clock of the estimate \[MHz\].
@@ -80,9 +80,9 @@ fn cycles(figures: &Figures) -> String {
     table(head, figures.controllers.iter().map(row))
 }
 
-/// The longest cycle that neither projects nor has a level released.
+/// The longest cycle that neither projects nor loses a direction.
 fn idle(controller: &Controller) -> u64 {
-    controller.path(false, 0).map_or(0, |path| path.max)
+    controller.path(Way::Free, 0).map_or(0, |path| path.max)
 }
 
 /// What makes a cycle longer, and the paths themselves.
@@ -92,18 +92,22 @@ fn paths(figures: &Figures) -> String {
         let cells = cells.map(|cell| format!(" | {}", cell.unwrap_or_default()));
         format!("{name}{}", cells.collect::<String>())
     };
-    let max = |it: &Controller, released, pivots| Some(it.path(released, pivots)?.max as f64);
-    let pivot = |it: &Controller| Some((max(it, false, 12)? - max(it, false, 1)?) / 11.0);
+    let max = |it: &Controller, way, pivots| Some(it.path(way, pivots)?.max as f64);
+    let free = |it: &Controller, pivots| max(it, Way::Free, pivots);
+    let pivot = |it: &Controller| Some((free(it, 12)? - free(it, 1)?) / 11.0);
     let mut lines = vec![
         row("nothing at a limit", &|it| Some(idle(it).to_string())),
+        row("commands limited near a lost direction, besides", &|it| {
+            Some((max(it, Way::Limited, 0)? - free(it, 0)?).to_string())
+        }),
         row("a level released, besides", &|it| {
-            Some((max(it, true, 0)? - max(it, false, 0)?).to_string())
+            Some((max(it, Way::Released, 0)? - max(it, Way::Limited, 0)?).to_string())
         }),
         row("the arm bent for it, besides", &|it| {
-            Some((it.bent()?.max as f64 - max(it, true, 0)?).to_string())
+            Some((max(it, Way::Bent, 0)? - max(it, Way::Released, 0)?).to_string())
         }),
         row("projection, besides", &|it| {
-            let stage = max(it, false, 1)? - max(it, false, 0)? - pivot(it)?;
+            let stage = free(it, 1)? - free(it, 0)? - pivot(it)?;
             Some(format!("{stage:.0}"))
         }),
         row("each pivot, besides", &|it| {
@@ -113,7 +117,7 @@ fn paths(figures: &Figures) -> String {
     for pivots in 1..=12 {
         let plural = if pivots == 1 { "" } else { "s" };
         lines.push(row(&format!("with {pivots} pivot{plural}"), &|it| {
-            Some(max(it, false, pivots)?.to_string())
+            Some(free(it, pivots)?.to_string())
         }));
     }
     lines.push(row("largest spread of a path", &|it| {

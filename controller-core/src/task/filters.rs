@@ -14,6 +14,7 @@ pub(crate) struct Thresholds<T: Real> {
     error_speed: T,
     lost_speed: T,
     stiff_mobility: T,
+    give: T,
 }
 
 impl<T: Real> Thresholds<T> {
@@ -24,10 +25,11 @@ impl<T: Real> Thresholds<T> {
         error_speed: T::ZERO,
         lost_speed: T::ZERO,
         stiff_mobility: T::ZERO,
+        give: T::ZERO,
     };
 
-    /// Without `shortens` every error is followed.
-    pub fn new(limits: &LevelLimits, shortens: bool) -> Self {
+    /// Without `shortens` every error is followed. `give` as in [`LevelFilters`].
+    pub fn new(limits: &LevelLimits, give: f64, shortens: bool) -> Self {
         Self {
             drive_mobility: T::from_f64(limits.drive_mobility),
             release_mobility: T::from_f64(limits.release_mobility),
@@ -35,6 +37,7 @@ impl<T: Real> Thresholds<T> {
             error_speed: T::from_f64(if shortens { limits.error_speed } else { 1e15 }),
             lost_speed: T::from_f64(limits.lost_speed),
             stiff_mobility: T::from_f64(limits.stiff_mobility),
+            give: T::from_f64(give),
         }
     }
 
@@ -47,6 +50,7 @@ impl<T: Real> Thresholds<T> {
             error_speed: between(self.error_speed, others.error_speed),
             lost_speed: between(self.lost_speed, others.lost_speed),
             stiff_mobility: between(self.stiff_mobility, others.stiff_mobility),
+            give: between(self.give, others.give),
         }
     }
 }
@@ -99,7 +103,9 @@ pub(crate) struct LevelFilters<T: Real> {
     /// 1/(3 z0) \[kg\]: from there on a command has no limit.
     free: T,
     /// zw^3 \[1/kg3\].
-    pub stiff_cubed: T,
+    stiff_cubed: T,
+    /// Share of what it would give by itself that every direction gives at bounds of joints.
+    give: T,
     /// K_d^-1 K_p \[1/s\], on the controlled axes: the speed that an error calls for.
     pub approach: Matrix3<T>,
     /// Most of it \[m/s\], or \[rad/s\].
@@ -115,6 +121,7 @@ impl<T: Real> LevelFilters<T> {
         lost_command: T::ZERO,
         free: T::ZERO,
         stiff_cubed: T::ZERO,
+        give: T::ZERO,
         approach: zeros(),
         error_speed: T::ZERO,
     };
@@ -140,6 +147,7 @@ impl<T: Real> LevelFilters<T> {
             lost_command: rate * thresholds.lost_speed / length,
             free: T::ONE / (T::from_f64(3.0) * z0),
             stiff_cubed: stiff * stiff * stiff,
+            give: thresholds.give,
             approach: approach_rate(gains, axes),
             error_speed: thresholds.error_speed / length,
         }
@@ -166,6 +174,15 @@ impl<T: Real> LevelFilters<T> {
     pub fn release(&self, z: T) -> T {
         let below = (T::ONE - z * self.inverse_release).most(T::ZERO);
         below * below
+    }
+
+    /// kk \[kg\] of a direction of mobility z \[1/kg\], given g: how much less than by itself it
+    /// gives at bounds of joints.
+    #[inline(always)]
+    pub fn stiffening(&self, z: T, softened: T) -> T {
+        let z = z.most(T::ZERO);
+        let cubed = z * z * z;
+        z * z / (cubed + (softened * self.stiff_cubed).most(self.give * cubed))
     }
 
     /// A mobility z \[1/kg\] as a share of the one from which on commands have no limit.

@@ -9,7 +9,7 @@ use super::{Axes, Target};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{ArmModel, Link, LinkFrame};
 use crate::joint::{Matrix3, Vector3, in_turn, zeros};
-use crate::ranges::{MAX_LEVELS, ORIENTATION_LENGTH, REACH_MARGIN_M};
+use crate::ranges::{GIVE_BELOW, MAX_LEVELS, ORIENTATION_LENGTH, REACH_MARGIN_M};
 use crate::real::Real;
 
 /// What a level tracks, in the precision of the controller.
@@ -116,8 +116,10 @@ impl<T: Real> Level<T> {
             }
         };
         let gains = gains_on(&task.gains, task.axes);
-        let thresholds = [LevelLimits::FIRST, LevelLimits::BELOW]
-            .map(|of_place| Thresholds::new(&task.limits.unwrap_or(of_place), shortens));
+        let places = [(LevelLimits::FIRST, 0.0), (LevelLimits::BELOW, GIVE_BELOW)];
+        let thresholds = places.map(|(of_place, give)| {
+            Thresholds::new(&task.limits.unwrap_or(of_place), give, shortens)
+        });
         Self {
             slot,
             tracked,

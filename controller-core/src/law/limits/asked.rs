@@ -1,5 +1,4 @@
-//! What a level asks for along its directions, and how that is cut where levels come and go, or have
-//! more rows than there are joints.
+//! What a level asks for along its directions, and what is left of it where directions get lost.
 
 use super::spectrum::Direction;
 use crate::joint::JointVector;
@@ -38,28 +37,31 @@ impl<T: Real> Asked<T> {
     }
 }
 
-/// Where mobilities go fast directions turn fast, and a command that is cut direction by direction
-/// turns with them: it is cut together with those that may have no more. The forces, and whether
-/// they were cut.
+/// What of commands along the directions of a level is left by the limits that they have near
+/// where directions are lost, and whether anything was cut. Not direction by direction: where
+/// mobilities cross directions turn by a right angle, and a cut would turn with them.
 #[cold]
 #[inline(never)]
 pub(super) fn cut_together<T: Real>(
     level: &Level<T>,
     directions: &[Direction<T>],
-    asked: impl Fn(&Direction<T>) -> Asked<T>,
+    commands: [T; 3],
 ) -> ([T; 3], bool) {
-    let most = |direction: &Direction<T>| level.filters.most_command(direction.mobility);
-    let (mut forces, mut is_cut) = ([T::ZERO; 3], false);
-    for (force, direction) in forces.iter_mut().zip(directions) {
-        let (of_own, limit) = (asked(direction), most(direction));
+    let mut most = [T::ZERO; 3];
+    for (most, direction) in most.iter_mut().zip(directions) {
+        *most = level.filters.most_command(direction.mobility);
+    }
+    let (mut cut, mut is_cut) = (commands, false);
+    let used = directions.len().min(3);
+    for (cut, &own) in cut.iter_mut().zip(&most).take(used) {
         let mut squared = T::ZERO;
-        for other in directions.iter().take(3) {
-            let share = asked(other).command / most(other).most(limit);
+        for (&command, &other) in commands.iter().zip(&most).take(used) {
+            let share = command / other.most(own);
             squared += share * share;
         }
         let excess = squared.square_root().most(T::ONE);
         is_cut |= excess > T::ONE;
-        *force = direction.drive * (of_own.command / excess) - direction.keep * of_own.own;
+        *cut = *cut / excess;
     }
-    (forces, is_cut)
+    (cut, is_cut)
 }

@@ -4,11 +4,12 @@
 //! ```text
 //! min (a - a*)^T T^-1 (a - a*)   over   lo <= a <= hi
 //! T   = M^-1 - sum over directions k of  kk_k x_k x_k^T,    x_k = L^-T y_k
-//! kk  = h z^2 / (z^3 + g zw^3),    g = 1 + (dev / dev0)^2
+//! kk  = h z^2 / (z^3 + max(g zw^3, c z^3)),    g = 1 + (dev / dev0)^2
 //! ```
 //!
 //! T is how the arm gives: as M^-1 where no task looks, stiffened in the directions of the levels
-//! by 1 + z^3/(g zw^3). The minimum is unique and changes no faster than a*. A level that the limits
+//! by 1 + z^3/(g zw^3), below the first level by 1/c at most: light directions of the wrist would
+//! outweigh the first level otherwise. The minimum is unique and changes no faster than a*. A level that the limits
 //! disturb for some time, dev, softens: its direction is not held at the price of the whole arm.
 //!
 //! Seven variables, a dual active set: the worst violated bound is pushed onto, joints at their
@@ -154,10 +155,10 @@ impl<T: Real> Projection<T> {
         for level in wished.levels.in_order() {
             let smoothed = self.smoothed.get(level.slot).copied();
             let share = smoothed.unwrap_or(T::ZERO) * softening;
-            let soft = (T::ONE + share * share) * level.filters.stiff_cubed;
+            let softened = T::ONE + share * share;
             for direction in wished.spectrum.of(level) {
-                let z = direction.mobility.most(T::ZERO);
-                let held = level.activation * z * z / (z * z * z + soft);
+                let stiffening = level.filters.stiffening(direction.mobility, softened);
+                let held = level.activation * stiffening;
                 tableau.stiffen(cholesky, &direction.along, held);
             }
         }

@@ -80,6 +80,8 @@ pub struct Spectrum<T: Real> {
     pub degraded: IndexSet,
     /// Slots of levels in force with a direction of which the levels below get a share.
     pub released: IndexSet,
+    /// Whether commands along any direction have a limit, as it is lost or nearly so.
+    pub limits_commands: bool,
     /// Whether the levels below get a share of any direction: a level is released, comes or goes.
     pub shares: bool,
 }
@@ -94,6 +96,7 @@ impl<T: Real> Spectrum<T> {
             release: T::ZERO,
             degraded: IndexSet::NONE,
             released: IndexSet::NONE,
+            limits_commands: false,
             shares: false,
         }
     }
@@ -108,6 +111,7 @@ impl<T: Real> Spectrum<T> {
     ) {
         self.count = rows.count();
         self.release = T::ZERO;
+        self.limits_commands = false;
         (self.degraded, self.released) = (IndexSet::NONE, IndexSet::NONE);
         let placed = self.directions.iter_mut().zip(&rows.jacobian);
         for (direction, row) in placed.take(self.count) {
@@ -151,6 +155,7 @@ impl<T: Real> Spectrum<T> {
             fade(own, level.activation);
             release *= level.activation;
         }
+        self.limits_commands |= filters.nearness(least) < T::ONE;
         let [degraded, released] = filters.lost(least);
         self.degraded.insert_if(level.slot, degraded);
         self.released.insert_if(level.slot, released);

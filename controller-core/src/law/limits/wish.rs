@@ -3,7 +3,7 @@
 //! ```text
 //! of level i     b    = ddx_d + K_d (dx_d - dx) + K_p x_err - (dJ/dt) dq     x_err shortened
 //!                c    = E^T (b - A_i (u + ur)) + e,   e = E^T K_d E y^T s
-//!                u_i  = left by the levels above of  sum of y_k (d_k clip(c_k) - p_k e_k)
+//!                u_i  = left by the levels above of  sum of y_k (d_k clip(c)_k - p_k e_k)
 //! of the rest    u_n  = null part of (L^-1 (f - D n) - kappa rho sn) + ur
 //! a* = L^-T sum of k u,   k <= 1: no joint faster than it can, no torque beyond its limit
 //! ```
@@ -15,7 +15,7 @@
 use super::asked::{Asked, cut_together};
 use super::bounds::JointBounds;
 use super::motion::WhitenedMotion;
-use super::spectrum::{Direction, Spectrum, left_by};
+use super::spectrum::{Spectrum, left_by};
 use super::way_out::WayOut;
 use crate::arm::dynamics::Dynamics;
 use crate::fault::IndexSet;
@@ -212,26 +212,21 @@ impl<T: Real> Wish<T> {
         }
         let damped = level.damping_of_rows(&speed);
         let mut shaped = rows.shortened.contains(level.slot);
-        let (mut forces, mut compensated) = ([T::ZERO; 3], [T::ZERO; 3]);
-        let parts = forces.iter_mut().zip(&mut compensated);
-        for (direction, (force, compensated)) in directions.iter().zip(parts) {
+        let (mut commands, mut owns) = ([T::ZERO; 3], [T::ZERO; 3]);
+        let mut compensated = [T::ZERO; 3];
+        for (k, direction) in directions.iter().enumerate().take(3) {
             let asked = Asked::of(direction, &wanted, &damped, &self.residual, first);
-            let most = level.filters.most_command(direction.mobility);
-            let cut = asked.command.limited(-most, most);
-            shaped |= cut != asked.command;
-            *force = direction.drive * cut - direction.keep * asked.own;
-            *compensated = asked.kept;
+            (commands[k], owns[k], compensated[k]) = (asked.command, asked.own, asked.kept);
         }
-        // With more rows than joints some direction is always lost, and turns as it likes.
-        if ask.levels.fades | (ask.spectrum.directions().len() > DOF) {
-            // By copies: what is pointed to could not stay in registers where nothing fades.
-            let residual = self.residual;
-            let asked = move |direction: &Direction<T>| {
-                Asked::of(direction, &wanted, &damped, &residual, first)
-            };
-            let (together, is_cut) = cut_together(level, directions, asked);
-            forces = together;
+        if ask.spectrum.limits_commands {
+            // By copies: what is pointed to could not stay in registers where nothing is cut.
+            let (cut, is_cut) = cut_together(level, directions, commands);
+            commands = cut;
             shaped |= is_cut;
+        }
+        let mut forces = [T::ZERO; 3];
+        for (k, direction) in directions.iter().enumerate().take(3) {
+            forces[k] = direction.drive * commands[k] - direction.keep * owns[k];
         }
         let mut command = match directions {
             [first, ..] => first.along * forces[0],
