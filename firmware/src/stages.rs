@@ -165,8 +165,8 @@ pub fn survey<T: Number>(
         let count = count.saturating_sub(empty);
         survey.cycle.add(count, index);
         let (released, pivots) = (step.status.released.any(), step.status.pivots);
-        let data = rig.state.data();
-        let (limited, bent) = (data.spectrum.limits_commands, data.way_out.bends());
+        let seen = rig.state.data();
+        let (limited, bent) = (seen.spectrum.limits_commands, seen.way_out.bends());
         let way = usize::from(limited) + usize::from(released) + usize::from(bent);
         let paths = survey.paths.get_mut(way);
         if let Some(path) = paths.and_then(|paths| paths.get_mut(usize::from(pivots))) {
