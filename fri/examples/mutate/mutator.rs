@@ -7,29 +7,13 @@
 #[path = "../../tests/data/mod.rs"]
 mod data;
 
-use std::fmt;
 use std::ops::Range;
-use std::panic::catch_unwind;
 
 use fri::{Command, CommandPacket, Error, Measurement, MeasurementPacket};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+use hostile::{Cases, Random, Table};
 
 /// Room for what is longer than both.
 const ROOM: usize = 1024;
-
-struct Random(ChaCha8Rng);
-
-impl Random {
-    /// 0 to n - 1.
-    fn below(&mut self, n: usize) -> usize {
-        ((u64::from(self.0.next_u32()) * n as u64) >> 32) as usize
-    }
-
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[self.below(from.len())]
-    }
-}
 
 /// The layout of a kind of datagram, as far as a check goes.
 struct Kind {
@@ -82,14 +66,10 @@ enum Outcome {
     NotFinite,
 }
 
-const OUTCOMES: [(Outcome, &str); 6] = [
-    (Outcome::Accepted, "accepted"),
-    (Outcome::Length, "length"),
-    (Outcome::Id, "id"),
-    (Outcome::Size, "size"),
-    (Outcome::Code, "code"),
-    (Outcome::NotFinite, "not finite"),
-];
+/// In their order.
+const OUTCOMES: [&str; 6] = ["accepted", "length", "id", "size", "code", "not finite"];
+
+const DAMAGES: [&str; 6] = ["bits", "bytes", "length", "other kind", "real", "integer"];
 
 fn u16_at(bytes: &[u8], at: usize) -> u16 {
     u16::from_le_bytes([bytes[at], bytes[at + 1]])
@@ -126,11 +106,7 @@ impl Kind {
     /// What it says, and that what it accepts comes back.
     fn outcome(&self, bytes: &[u8]) -> Result<Outcome, String> {
         let mut again = [0xAA; ROOM];
-        let read = catch_unwind(move || {
-            let read = (self.read)(bytes, &mut again);
-            (read, again)
-        });
-        let (read, again) = read.map_err(|_| "panic".to_string())?;
+        let read = (self.read)(bytes, &mut again);
         Ok(match read {
             Ok(length) => {
                 let same = again[..length].iter().zip(bytes).enumerate();
@@ -167,32 +143,19 @@ impl Datagram {
         }
     }
 
-    fn damage(&mut self, own: &Kind, other: &Kind, random: &mut Random) {
-        match random.below(8) {
-            // Bits.
-            0 | 1 if self.length > 0 => {
-                for _ in 0..=random.below(8) {
-                    let bit = random.below(8 * self.length);
-                    self.bytes[bit / 8] ^= 1 << (bit % 8);
-                }
-            }
-            // Bytes.
-            2 if self.length > 0 => {
-                for _ in 0..=random.below(4) {
-                    let at = random.below(self.length);
-                    let any = random.0.next_u32() as u8;
-                    self.bytes[at] = random.pick(&[0x00, 0x01, 0x7F, 0x80, 0xFF, any]);
-                }
-            }
+    /// Which damage it was.
+    fn damage(&mut self, own: &Kind, other: &Kind, random: &mut Random) -> usize {
+        let damage = random.pick(&[0, 0, 1, 2, 3, 4, 5, 5]);
+        match damage {
+            0 => random.flip(&mut self.bytes[..self.length]),
+            1 => random.set(&mut self.bytes[..self.length]),
             // Cut off, or longer by what was in the buffer.
-            3 => {
-                let near = (self.length + random.below(9)).saturating_sub(4);
-                let any = random.below(ROOM + 1);
-                let length = random.pick(&[near, any, own.valid.len(), other.valid.len()]);
-                self.length = length.min(ROOM);
+            2 => {
+                let any = random.length(self.length, ROOM);
+                self.length = random.pick(&[any, any, own.valid.len(), other.valid.len()]);
             }
             // The other kind from some offset on, or up to it.
-            4 => {
+            3 => {
                 let any = random.below(other.valid.len());
                 let cut = random.pick(&[4, 6, 8, 140, any]);
                 if random.below(2) == 0 {
@@ -202,9 +165,8 @@ impl Datagram {
                     self.bytes[..cut].copy_from_slice(&other.valid[..cut]);
                 }
             }
-            // A real.
-            5 => {
-                let range = random.pick(&[0, 1, 2, 3]).min(own.reals.len() - 1);
+            4 => {
+                let range = random.below(4).min(own.reals.len() - 1);
                 let Range { start, end } = own.reals[range];
                 let at = start + 4 * random.below((end - start) / 4);
                 let extremes = [
@@ -217,15 +179,15 @@ impl Datagram {
                     f32::MIN_POSITIVE.to_bits(),
                     1, // the smallest
                     (-0.0f32).to_bits(),
-                    random.0.next_u32(),
+                    random.bits(),
                 ];
                 self.put(at, &random.pick(&extremes).to_le_bytes());
             }
-            // An integer of 16 bits: counters, size, id, fill, codes and their neighbours.
+            // Of 16 bits: counters, size, id, fill, codes and their neighbours.
             _ => {
                 let fields = [0, 2, 4, 6, 136, 138, 140, 144, 146, 178, 180, 182, 184];
                 let at = random.pick(&fields);
-                let any = random.0.next_u32() as u16;
+                let any = random.bits() as u16;
                 let extremes = [0, 1, 2, 3, 4, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF, any];
                 let lengths = [375, 376, 377, 915, 916, 917, 0x1005, 0x2006];
                 let value = match random.below(3) {
@@ -235,79 +197,69 @@ impl Datagram {
                 self.put(at, &value.to_le_bytes());
             }
         }
+        damage
     }
 }
 
-/// How often each reader said what.
-pub struct Table {
-    rows: [(&'static str, [u64; OUTCOMES.len()]); 2],
+/// Both readers, and what they have said.
+pub struct Datagrams {
+    kinds: [Kind; 2],
+    datagram: Datagram,
+    damages: Table,
+    outcomes: Table,
 }
 
-impl Table {
-    /// The first error that never occurred, of those that can: a command has no codes.
-    pub fn missing(&self) -> Option<String> {
-        let rows = self.rows.iter().flat_map(|(kind, row)| {
-            let cells = OUTCOMES.iter().zip(row);
-            cells.map(move |(&(outcome, name), &count)| (*kind, outcome, name, count))
-        });
-        rows.into_iter()
-            .find(|&(kind, outcome, _, count)| {
-                let impossible = kind == "command" && outcome == Outcome::Code;
-                (count == 0) != impossible
-            })
-            .map(|(kind, _, name, count)| format!("{kind}, {name}: {count} times"))
-    }
-}
-
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:12}", "read as")?;
-        for (_, name) in OUTCOMES {
-            write!(f, "{name:>12}")?;
+impl Datagrams {
+    pub fn new() -> Self {
+        let kinds = kinds();
+        let damages = Table::new("damage", &DAMAGES);
+        let outcomes = Table::new("read as", &OUTCOMES);
+        Self {
+            damages: damages.with(kinds[0].name, &[]).with(kinds[1].name, &[]),
+            // A command has no codes.
+            outcomes: (outcomes.with(kinds[0].name, &[]))
+                .with(kinds[1].name, &[Outcome::Code as usize]),
+            kinds,
+            datagram: Datagram {
+                bytes: [0; ROOM],
+                length: 0,
+            },
         }
-        for (kind, row) in &self.rows {
-            write!(f, "\n{kind:12}")?;
-            for count in row {
-                write!(f, "{count:>12}")?;
+    }
+}
+
+impl Cases for Datagrams {
+    /// A datagram to both readers.
+    fn case(&mut self, random: &mut Random) -> Result<(), String> {
+        let i = random.below(2);
+        let (own, other) = (&self.kinds[i], &self.kinds[1 - i]);
+        let datagram = &mut self.datagram;
+        datagram.bytes = [0; ROOM];
+        datagram.length = own.valid.len();
+        datagram.bytes[..own.valid.len()].copy_from_slice(&own.valid);
+        for _ in 0..=random.below(3) {
+            let damage = datagram.damage(own, other, random);
+            self.damages.count(damage, i);
+        }
+        let bytes = &datagram.bytes[..datagram.length];
+        for (column, kind) in self.kinds.iter().enumerate() {
+            let expected = kind.expected(bytes);
+            let outcome = kind.outcome(bytes);
+            let outcome = outcome.map_err(|why| format!("{}: {why}", kind.name))?;
+            if outcome != expected {
+                let name = kind.name;
+                return Err(format!("{name}: {outcome:?}; expected: {expected:?}"));
             }
+            self.outcomes.count(outcome as usize, column);
         }
         Ok(())
     }
-}
 
-/// Gives `count` datagrams to both readers.
-///
-/// # Errors
-/// The first datagram that is not treated as it must be: number, reason, bytes.
-pub fn run(count: u64, seed: u64) -> Result<Table, String> {
-    let kinds = kinds();
-    let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
-    let mut rows = [0, 1].map(|i: usize| (kinds[i].name, [0; OUTCOMES.len()]));
-    for number in 0..count {
-        let i = random.below(2);
-        let (own, other) = (&kinds[i], &kinds[1 - i]);
-        let mut datagram = Datagram {
-            bytes: [0; ROOM],
-            length: own.valid.len(),
-        };
-        datagram.bytes[..own.valid.len()].copy_from_slice(&own.valid);
-        for _ in 0..=random.below(3) {
-            datagram.damage(own, other, &mut random);
-        }
-        let bytes = &datagram.bytes[..datagram.length];
-        for (kind, (_, row)) in kinds.iter().zip(&mut rows) {
-            let expected = kind.expected(bytes);
-            let outcome = kind.outcome(bytes).and_then(|outcome| {
-                let as_expected = (outcome == expected).then_some(outcome);
-                as_expected.ok_or_else(|| format!("{outcome:?}; expected: {expected:?}"))
-            });
-            row[outcome.map_err(|why| failure(number, kind.name, &why, bytes))? as usize] += 1;
-        }
+    fn bytes(&self) -> &[u8] {
+        &self.datagram.bytes[..self.datagram.length]
     }
-    Ok(Table { rows })
-}
 
-fn failure(number: u64, kind: &str, why: &str, bytes: &[u8]) -> String {
-    let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-    format!("datagram {number} read as {kind}: {why}; bytes: {hex}")
+    fn tables(self) -> Vec<Table> {
+        vec![self.damages, self.outcomes]
+    }
 }
