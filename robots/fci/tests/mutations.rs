@@ -3,16 +3,31 @@
 #[path = "../examples/mutate/mutator.rs"]
 mod mutator;
 
-#[test]
-fn damaged_datagrams_and_streams() {
-    let table = mutator::run(100_000, 2018).unwrap_or_else(|failure| panic!("{failure}"));
-    assert_eq!(table.missing(), None, "\n{table}");
+use hostile::{Cases, missing, run};
+
+use mutator::{Clients, Datagrams, Robots, Streams};
+
+fn check<C: Cases>(count: u64, new: impl Fn() -> C + Sync) {
+    let tables = run(count, 2018, new).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(missing(&tables), None, "{tables:?}");
 }
 
-/// The same seed gives the same cases, another one others.
 #[test]
-fn the_seed_decides() {
-    let text = |seed| mutator::run(10_000, seed).map(|table| table.to_string());
-    assert_eq!(text(1), text(1));
-    assert_ne!(text(1), text(2));
+fn damaged_datagrams_into_the_codec() {
+    check(100_000, Datagrams::new);
+}
+
+#[test]
+fn damaged_streams_into_the_codec() {
+    check(100_000, Streams::new);
+}
+
+#[test]
+fn hostile_states_and_streams_into_the_client() {
+    check(100_000, Clients::new);
+}
+
+#[test]
+fn hostile_commands_and_streams_into_the_robot() {
+    check(100_000, Robots::new);
 }

@@ -1,130 +1,24 @@
 //! Both ends of the crate, byte by byte: the machine against the robot's end, which is held against the
 //! vendor's clients.
 
-use fci::client::{Cause, Client, Duty, Event, Facts, Phase, Stop};
-use fci::robot::{Arm, IDENTITY, Limits, Operator, Robot, Settings};
-use fci::{Command, RobotError, RobotErrors, StatePacket, Version, command, state};
+use fci::client::{Cause, Event, Stop};
+use fci::{RobotError, RobotErrors, Version};
 
-use crate::scripted::{START, URDF};
+#[path = "../pair/mod.rs"]
+mod ends;
 
-/// The usual posture, in the ranges of both arms.
-const READY: [f64; 7] = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785];
+use ends::{Pair, ToClient, URDF};
 
-/// Two ends of a connection.
-struct Pair {
-    client: Client,
-    robot: Robot<&'static [u8]>,
-    operator: Operator,
-    arm: Arm,
-    /// Torque that the client commands \[Nm\].
-    torque: f64,
-    /// Cycles that are left in which nothing of the client arrives.
-    gone: u32,
-    answers: u32,
-}
-
-impl Pair {
-    fn new(version: Version, may_recover: bool) -> Self {
-        let mut o_t_f = IDENTITY;
-        o_t_f[12..15].copy_from_slice(&[0.3, 0.0, 0.6]);
-        let mut client = Client::new(may_recover);
-        client.connected(50_000);
-        let limits = if version == Version::V5 {
-            Limits::PANDA
-        } else {
-            Limits::FR3
-        };
-        Self {
-            client,
-            robot: Robot::new(Settings::new(version, limits), URDF.as_bytes()),
-            operator: Operator::ABSENT,
-            arm: Arm {
-                q: READY,
-                dq: [0.0; 7],
-                tau_j: [0.0; 7],
-                tau_ext: [0.0; 7],
-                wrench: [0.0; 6],
-                o_t_f,
-                twist: [0.0; 6],
-                theta: READY,
-                dtheta: [0.0; 7],
-            },
-            torque: 0.0,
-            gone: 0,
-            answers: 0,
-        }
-    }
-
-    fn cycle(&mut self) {
-        if self.client.wants_new_connection() {
-            self.robot.disconnect();
-            self.client.connected(50_000);
-        }
-        let sent = self.client.transmit().to_vec();
-        self.client.transmitted(sent.len());
-        let mut rest = &sent[..];
-        while let Some(_handled) = self.robot.receive(&mut rest).expect("a request") {}
-        let mut room = [0; 11];
-        loop {
-            let count = self.robot.replies(&mut room);
-            if count == 0 {
-                break;
-            }
-            self.client.receive(&room[..count], &mut ());
-        }
-        let version = self.robot.version();
-        let mut room = [0; state::LEN_MAX];
-        let state = self.robot.state(&self.arm, &self.operator);
-        let datagram = state.emit(version, &mut room).expect("a state");
-        let connected = version == self.client.version() && self.robot.client().is_some();
-        if connected {
-            let packet = StatePacket::new_checked(version, datagram).expect("a state");
-            let duty = self.client.state(&Facts::of(&packet));
-            if self.gone > 0 {
-                self.gone -= 1;
-            } else if duty != Duty::Listen {
-                let last = duty == Duty::Finish;
-                let answer = Command::torque(version, packet.message_id(), [self.torque; 7], last);
-                let mut room = [0; command::LEN_MAX];
-                let bytes = answer.emit(version, &mut room);
-                self.robot.command(bytes);
-                self.answers += 1;
-            }
-        }
-        self.robot.advance();
-        if self.client.phase() == Phase::Ready {
-            self.client.start(&START);
-        }
-    }
-
-    /// Until the motion has run for so many answers.
-    fn moving(&mut self, answers: u32) {
-        for _ in 0..10_000 {
-            if self.answers >= answers {
-                return;
-            }
-            self.cycle();
-        }
-        panic!("no motion: {:?}", self.client.phase());
-    }
-
-    fn end(&mut self) -> Stop {
-        for _ in 0..3000 {
-            self.cycle();
-            if let Some(stop) = self.client.stopped() {
-                return stop;
-            }
-        }
-        panic!("no end: {:?}", self.client.phase());
-    }
+fn pair(version: Version, may_recover: bool) -> Pair {
+    Pair::new(version, may_recover, URDF, None)
 }
 
 #[test]
 fn a_motion_from_connect_to_its_second_reply_in_every_version() {
     for version in Version::ALL {
-        let mut pair = Pair::new(version, false);
+        let mut pair = pair(version, false);
         pair.moving(2000);
-        pair.client.finish();
+        pair.tell_client(ToClient::Finish);
         let stop = pair.end();
         assert_eq!(
             stop,
@@ -145,7 +39,7 @@ fn a_motion_from_connect_to_its_second_reply_in_every_version() {
 #[test]
 fn causes_come_over_the_wire() {
     let motion = |change: fn(&mut Pair)| {
-        let mut pair = Pair::new(Version::V10, false);
+        let mut pair = pair(Version::V10, false);
         pair.moving(100);
         change(&mut pair);
         let stop = pair.end();
@@ -160,7 +54,9 @@ fn causes_come_over_the_wire() {
     assert_eq!(lost.event(), Event::Lost);
     let user = motion(|pair| pair.operator.user_stop = true);
     assert_eq!(user, Cause::UserStop);
-    let halt = motion(|pair| pair.client.halt());
+    let halt = motion(|pair| {
+        pair.tell_client(ToClient::Halt);
+    });
     assert_eq!(halt, Cause::Halted);
     let limit = motion(|pair| pair.arm.q[3] = 0.5);
     assert_eq!(limit, reflex(RobotError::JointPositionLimitsViolation));
@@ -168,14 +64,14 @@ fn causes_come_over_the_wire() {
 
 #[test]
 fn nineteen_lost_commands_are_borne() {
-    let mut pair = Pair::new(Version::V10, false);
+    let mut pair = pair(Version::V10, false);
     for _ in 0..50 {
         pair.moving(pair.answers + 30);
         pair.gone = 19;
         pair.cycle();
     }
     pair.moving(pair.answers + 30);
-    pair.client.finish();
+    pair.tell_client(ToClient::Finish);
     assert_eq!(pair.end().cause, Cause::Finished);
     assert_eq!(pair.robot.counters().reflexes, 0);
 }
@@ -183,7 +79,7 @@ fn nineteen_lost_commands_are_borne() {
 #[test]
 fn recovery_on_request_leaves_the_robot_idle() {
     for may_recover in [false, true] {
-        let mut pair = Pair::new(Version::V5, may_recover);
+        let mut pair = pair(Version::V5, may_recover);
         pair.moving(100);
         pair.torque = 5.0;
         let stop = pair.end();
@@ -196,7 +92,7 @@ fn recovery_on_request_leaves_the_robot_idle() {
 
 #[test]
 fn a_robot_that_takes_no_motion_says_so() {
-    let mut pair = Pair::new(Version::V10, false);
+    let mut pair = pair(Version::V10, false);
     pair.operator.ready = false;
     let stop = pair.end();
     assert_eq!(

@@ -1,21 +1,30 @@
 //! States and commands.
 
-use std::panic::catch_unwind;
-
 use fci::state::{self, FIELDS, State, StatePacket};
 use fci::{Command, Version, command};
 
-use super::{OUTCOMES, Outcome, Random, Row, data};
+use hostile::{Cases, Random, Table};
+
+use super::{OUTCOMES, Outcome, data};
 
 /// Room for what is longer than all.
 const ROOM: usize = 2560;
 
 const VERSIONS: [Version; 3] = [Version::V5, Version::V6, Version::V10];
 
+pub const DAMAGES: [&str; 6] = [
+    "bits",
+    "bytes",
+    "length",
+    "other kind",
+    "real",
+    "code or bool",
+];
+
 /// The layout of a kind of datagram, as far as a check goes.
-struct Kind {
-    version: Version,
-    valid: Vec<u8>,
+pub struct Kind {
+    pub version: Version,
+    pub valid: Vec<u8>,
     /// Offset and number of reals, one block after the other; bytes of each.
     reals: Vec<(usize, usize)>,
     real_len: usize,
@@ -55,7 +64,7 @@ fn read_command(
 }
 
 impl Kind {
-    fn state(version: Version) -> Self {
+    pub fn state(version: Version) -> Self {
         let layout = data::layout(version);
         let place = |&(_, count, double, single): &(_, usize, Option<usize>, usize)| {
             let at = if layout.real == 4 {
@@ -84,7 +93,7 @@ impl Kind {
         }
     }
 
-    fn command(version: Version) -> Self {
+    pub fn command(version: Version) -> Self {
         Self {
             version,
             valid: data::command(version),
@@ -97,7 +106,7 @@ impl Kind {
     }
 
     /// What the reader must say.
-    fn expected(&self, bytes: &[u8]) -> Outcome {
+    pub fn expected(&self, bytes: &[u8]) -> Outcome {
         if bytes.len() != self.valid.len() {
             Outcome::Length
         } else if self.codes.iter().any(|&(at, max)| bytes[at] > max) {
@@ -129,12 +138,7 @@ impl Kind {
     /// What it says, and that what it accepts comes back.
     fn outcome(&self, bytes: &[u8]) -> Result<Outcome, String> {
         let mut again = [0xAA; ROOM];
-        let read = catch_unwind(move || {
-            let read = (self.read)(self.version, bytes, &mut again);
-            (read, again)
-        });
-        let (read, again) = read.map_err(|_| "panic".to_string())?;
-        let outcome = match read {
+        let outcome = match (self.read)(self.version, bytes, &mut again) {
             Err(error) => return Outcome::of(error),
             Ok(outcome) => outcome,
         };
@@ -152,118 +156,164 @@ impl Kind {
     }
 }
 
+/// A datagram that is being damaged.
+pub struct Datagram {
+    bytes: [u8; ROOM],
+    len: usize,
+}
+
+impl Datagram {
+    /// None.
+    pub fn new() -> Self {
+        Self {
+            bytes: [0; ROOM],
+            len: 0,
+        }
+    }
+
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[..self.len]
+    }
+
+    /// Begins anew.
+    pub fn set(&mut self, valid: &[u8]) {
+        self.bytes[..valid.len()].copy_from_slice(valid);
+        self.bytes[valid.len()..].fill(0);
+        self.len = valid.len();
+    }
+
+    /// Writes over it, as far as it goes.
+    pub fn put(&mut self, at: usize, bytes: &[u8]) {
+        let places = self.bytes[..self.len].iter_mut().skip(at);
+        for (place, byte) in places.zip(bytes) {
+            *place = *byte;
+        }
+    }
+
+    /// Which damage it was, of one of a kind by a part of another one.
+    pub fn damage(&mut self, own: &Kind, other: &Kind, random: &mut Random) -> usize {
+        let damage = random.below(DAMAGES.len());
+        let bytes = &mut self.bytes;
+        match damage {
+            0 => random.flip(&mut bytes[..self.len]),
+            1 => random.set(&mut bytes[..self.len]),
+            // Cut off, or longer by what was in the buffer.
+            2 => {
+                let any = random.length(self.len, ROOM);
+                self.len = random.pick(&[any, any, own.valid.len(), other.valid.len()]);
+            }
+            // The other kind from some offset on.
+            3 => {
+                let cut = random.below(other.valid.len());
+                bytes[cut..other.valid.len()].copy_from_slice(&other.valid[cut..]);
+                self.len = random.pick(&[self.len, other.valid.len()]);
+            }
+            4 => {
+                let (at, count) = random.pick(&own.reals);
+                let at = at + own.real_len * random.below(count);
+                let (low, high) = (random.bits(), random.bits());
+                let doubles = [
+                    f64::NAN.to_bits(),
+                    0x7FF0_0000_0000_0001, // signalling
+                    f64::INFINITY.to_bits(),
+                    f64::NEG_INFINITY.to_bits(),
+                    f64::MAX.to_bits(),
+                    1, // the smallest
+                    u64::from(high) << 32 | u64::from(low),
+                ];
+                let singles = [
+                    f32::NAN.to_bits(),
+                    0x7F80_0001,
+                    f32::INFINITY.to_bits(),
+                    f32::NEG_INFINITY.to_bits(),
+                    f32::MAX.to_bits(),
+                    1,
+                    low,
+                ];
+                let place = &mut bytes[at..at + own.real_len];
+                match own.real_len {
+                    4 => place.copy_from_slice(&random.pick(&singles).to_le_bytes()),
+                    _ => place.copy_from_slice(&random.pick(&doubles).to_le_bytes()),
+                }
+            }
+            _ => {
+                let codes = own.codes.len();
+                let place = random.below(codes + own.bools.len().min(8));
+                let at = match own.codes.get(place) {
+                    Some(&(at, _)) => at,
+                    None => own.bools[place - codes],
+                };
+                bytes[at] = random.below(9) as u8;
+            }
+        }
+        damage
+    }
+}
+
 /// The readers, and what they have said.
 pub struct Datagrams {
     kinds: Vec<Kind>,
-    pub rows: Vec<Row>,
+    datagram: Datagram,
+    damages: Table,
+    outcomes: Table,
 }
 
 impl Datagrams {
     pub fn new() -> Self {
+        let mut damages = Table::new("damage", &DAMAGES);
+        let mut outcomes = Table::new("read as", &OUTCOMES);
+        for version in VERSIONS {
+            let head = format!("state {}", version.number());
+            damages = damages.with(&head, &[]);
+            outcomes = outcomes.with(&head, &[]);
+        }
+        for version in VERSIONS {
+            let head = format!("command {}", version.number());
+            damages = damages.with(&head, &[]);
+            // It has no codes.
+            outcomes = outcomes.with(&head, &[Outcome::Code as usize]);
+        }
         let states = VERSIONS.map(Kind::state);
         let kinds = states.into_iter().chain(VERSIONS.map(Kind::command));
-        let row = |name, possible| {
-            move |version: Version| Row::new(format!("{name} {}", version.number()), possible)
-        };
-        const ALL: &[Outcome] = &[
-            Outcome::Accepted,
-            Outcome::Length,
-            Outcome::Code,
-            Outcome::Bool,
-            Outcome::NotFinite,
-        ];
-        const NO_CODE: &[Outcome] = &[
-            Outcome::Accepted,
-            Outcome::Length,
-            Outcome::Bool,
-            Outcome::NotFinite,
-        ];
-        let states = VERSIONS.map(row("state", ALL));
-        let rows = states
-            .into_iter()
-            .chain(VERSIONS.map(row("command", NO_CODE)));
         Self {
             kinds: kinds.collect(),
-            rows: rows.collect(),
+            datagram: Datagram::new(),
+            damages,
+            outcomes,
         }
     }
+}
 
+impl Cases for Datagrams {
     /// One datagram to all readers.
-    pub fn case(&mut self, random: &mut Random) -> Result<(), (String, Vec<u8>)> {
-        let own = &self.kinds[random.below(self.kinds.len())];
+    fn case(&mut self, random: &mut Random) -> Result<(), String> {
+        let chosen = random.below(self.kinds.len());
+        let own = &self.kinds[chosen];
         let other = &self.kinds[random.below(self.kinds.len())];
-        let mut bytes = [0; ROOM];
-        bytes[..own.valid.len()].copy_from_slice(&own.valid);
-        let mut len = own.valid.len();
+        self.datagram.set(&own.valid);
         for _ in 0..=random.below(3) {
-            damage(&mut bytes, &mut len, own, other, random);
+            let damage = self.datagram.damage(own, other, random);
+            self.damages.count(damage, chosen);
         }
-        let bytes = &bytes[..len];
-        for (kind, row) in self.kinds.iter().zip(&mut self.rows) {
+        let bytes = self.datagram.bytes();
+        for (column, kind) in self.kinds.iter().enumerate() {
             let expected = kind.expected(bytes);
             let outcome = kind.outcome(bytes).and_then(|outcome| {
                 let as_expected = (outcome == expected).then_some(outcome);
                 as_expected.ok_or_else(|| format!("{outcome:?}; expected: {expected:?}"))
             });
-            let outcome =
-                outcome.map_err(|why| (format!("{}: {why}", row.name), bytes.to_vec()))?;
-            let place = OUTCOMES.iter().position(|it| it.0 == outcome);
-            row.counts[place.expect("in the list")] += 1;
+            let version = kind.version.number();
+            let outcome = outcome.map_err(|why| format!("version {version}: {why}"))?;
+            self.outcomes.count(outcome as usize, column);
         }
         Ok(())
     }
-}
 
-fn damage(bytes: &mut [u8; ROOM], len: &mut usize, own: &Kind, other: &Kind, random: &mut Random) {
-    match random.below(6) {
-        0 | 1 => random.damage(&mut bytes[..*len]),
-        // Cut off, or longer by what was in the buffer.
-        2 => {
-            let near = (*len + random.below(9)).saturating_sub(4);
-            let any = random.below(ROOM + 1);
-            let length = random.pick(&[near, any, own.valid.len(), other.valid.len()]);
-            *len = length.min(ROOM);
-        }
-        // The other kind from some offset on.
-        3 => {
-            let cut = random.below(other.valid.len());
-            bytes[cut..other.valid.len()].copy_from_slice(&other.valid[cut..]);
-            *len = random.pick(&[*len, other.valid.len()]);
-        }
-        // A real.
-        4 => {
-            let (at, count) = random.pick(&own.reals);
-            let at = at + own.real_len * random.below(count);
-            let extremes = [
-                f64::NAN,
-                f64::from_bits(0x7FF0_0000_0000_0001), // signalling
-                f64::INFINITY,
-                f64::NEG_INFINITY,
-                f64::MAX,
-                f64::MIN_POSITIVE,
-                f64::from_bits(1), // the smallest
-                -0.0,
-            ];
-            let double = random.pick(&extremes).to_le_bytes();
-            let singles = [
-                0x7FC0_0000,
-                0x7F80_0001,
-                0x7F80_0000,
-                0xFF80_0000,
-                0x7F7F_FFFF,
-                1,
-            ];
-            let single: u32 = random.pick(&singles);
-            match own.real_len {
-                4 => bytes[at..at + 4].copy_from_slice(&single.to_le_bytes()),
-                _ => bytes[at..at + 8].copy_from_slice(&double),
-            }
-        }
-        // A code or a truth value.
-        _ => {
-            let code = own.codes.iter().map(|&(at, _)| at);
-            let places: Vec<usize> = code.chain(own.bools.iter().copied().take(8)).collect();
-            bytes[random.pick(&places)] = random.below(9) as u8;
-        }
+    fn bytes(&self) -> &[u8] {
+        self.datagram.bytes()
+    }
+
+    fn tables(self) -> Vec<Table> {
+        vec![self.damages, self.outcomes]
     }
 }

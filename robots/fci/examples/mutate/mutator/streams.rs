@@ -1,55 +1,65 @@
 //! Requests and replies in a stream that comes in pieces.
 
-use std::panic::catch_unwind;
-
 use fci::{Message, Reply, Request, Stream, Version};
+use hostile::{Cases, Random, Table};
 
-use rand_chacha::rand_core::Rng as _;
-
-use super::{OUTCOMES, Outcome, Random, Row, data};
+use super::{OUTCOMES, Outcome, data};
 
 /// The buffer of the receiver, and the largest size that it allows: messages of the client fit,
 /// long replies do not.
 const BUFFER: usize = 512;
 const SIZE_MAX: usize = 1024;
 
+pub const DAMAGES: [&str; 5] = ["bits", "bytes", "header", "payload", "length"];
+
 #[derive(Clone, Copy, PartialEq)]
-enum Direction {
+pub enum Direction {
     ToRobot,
     ToClient,
 }
 
 /// A message of a stream, told apart without the codec.
-struct Piece<'a> {
-    code: u32,
-    id: u32,
-    payload: &'a [u8],
+pub struct Piece<'a> {
+    pub code: u32,
+    pub id: u32,
+    pub payload: &'a [u8],
 }
 
-/// Messages in the bytes, and whether a size stops the stream behind them.
-fn pieces(mut bytes: &[u8]) -> (Vec<Piece<'_>>, bool) {
-    let mut pieces = Vec::new();
+/// What there is in the bytes of a stream.
+pub struct Pieces<'a> {
+    pub messages: Vec<Piece<'a>>,
+    /// A size stops it behind them.
+    pub is_lost: bool,
+    /// Bytes of a message that is not complete, or of a lost stream.
+    pub rest: usize,
+}
+
+/// Messages of at most so many bytes.
+pub fn pieces(mut bytes: &[u8], size_max: usize) -> Pieces<'_> {
+    let (mut messages, mut is_lost) = (Vec::new(), false);
     while bytes.len() >= 12 {
         let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("4 bytes"));
         let size = word(8) as usize;
-        if !(12..=SIZE_MAX).contains(&size) {
-            return (pieces, true);
-        }
-        if bytes.len() < size {
+        is_lost = !(12..=size_max).contains(&size);
+        if is_lost || bytes.len() < size {
             break;
         }
-        pieces.push(Piece {
+        messages.push(Piece {
             code: word(0),
             id: word(4),
             payload: &bytes[12..size],
         });
         bytes = &bytes[size..];
     }
-    (pieces, false)
+    Pieces {
+        messages,
+        is_lost,
+        rest: bytes.len(),
+    }
 }
 
 /// What a reader must say to a message.
-fn expected(version: Version, direction: Direction, piece: &Piece<'_>) -> Outcome {
+pub fn expected(version: Version, direction: Direction, piece: &Piece<'_>) -> Outcome {
     let Some(exchange) = data::exchange(version, piece.code) else {
         return Outcome::Code;
     };
@@ -130,88 +140,91 @@ fn outcome(
 
 const VERSIONS: [Version; 4] = [Version::V5, Version::V7, Version::V8, Version::V10];
 
+/// Valid messages of a version: requests, and replies with every status.
+pub fn messages(version: Version) -> [Vec<Vec<u8>>; 2] {
+    let mut messages = [Vec::new(), Vec::new()];
+    for (exchange, id) in data::EXCHANGES.iter().zip(0..) {
+        let Some(code) = exchange.code(version) else {
+            continue;
+        };
+        let request = data::request(exchange, version);
+        messages[0].push(data::message(code, id, &request));
+        for status in 0..=exchange.status_max(version) {
+            let more = [0, 3, 700][usize::from(status % 3)];
+            let reply = data::reply(exchange, status, more);
+            messages[1].push(data::message(code, id, &reply));
+        }
+    }
+    messages
+}
+
 /// The readers, and what they have said.
 pub struct Streams {
-    /// Valid messages, version by version, requests before replies.
-    messages: Vec<[Vec<Vec<u8>>; 2]>,
-    pub rows: Vec<Row>,
+    /// Version by version, requests before replies.
+    messages: [[Vec<Vec<u8>>; 2]; VERSIONS.len()],
+    bytes: Vec<u8>,
+    damages: Table,
+    outcomes: Table,
+    streams: Table,
 }
 
 impl Streams {
     pub fn new() -> Self {
-        const REQUEST: &[Outcome] = &[
-            Outcome::Accepted,
-            Outcome::Length,
-            Outcome::Code,
-            Outcome::Bool,
-        ];
-        // Only the wall of version 5 has a truth value.
-        const REPLY: &[Outcome] = &[Outcome::Accepted, Outcome::Length, Outcome::Code];
-        let mut rows = Vec::new();
+        let mut outcomes = Table::new("message read as", &OUTCOMES);
         for version in VERSIONS {
             let number = version.number();
-            let reply = if version == Version::V5 {
-                REQUEST
-            } else {
-                REPLY
+            let not_finite = Outcome::NotFinite as usize;
+            // Only the wall of version 5 has a truth value.
+            let reply: &[usize] = match version {
+                Version::V5 => &[not_finite],
+                _ => &[not_finite, Outcome::Bool as usize],
             };
-            rows.push(Row::new(format!("request {number}"), REQUEST));
-            rows.push(Row::new(format!("reply {number}"), reply));
+            outcomes = outcomes.with(format!("request {number}"), &[not_finite]);
+            outcomes = outcomes.with(format!("reply {number}"), reply);
         }
-        const STREAM: &[Outcome] = &[Outcome::Accepted, Outcome::Length];
-        rows.push(Row::new("stream".into(), STREAM));
-        let messages = VERSIONS.map(|version| {
-            let exchanges = data::EXCHANGES.iter();
-            let mut messages = [Vec::new(), Vec::new()];
-            for (exchange, id) in exchanges.zip(0..) {
-                let Some(code) = exchange.code(version) else {
-                    continue;
-                };
-                let request = data::request(exchange, version);
-                messages[0].push(data::message(code, id, &request));
-                for status in 0..=exchange.status_max(version) {
-                    let more = [0, 3, 700][usize::from(status % 3)];
-                    let reply = data::reply(exchange, status, more);
-                    messages[1].push(data::message(code, id, &reply));
-                }
-            }
-            messages
-        });
         Self {
-            messages: messages.into(),
-            rows,
+            messages: VERSIONS.map(messages),
+            bytes: Vec::new(),
+            damages: Table::new("damage", &DAMAGES).with("streams", &[]),
+            outcomes,
+            streams: Table::new("stream", &["sound", "lost"]).with("streams", &[]),
         }
     }
+}
 
+impl Cases for Streams {
     /// One stream of one to four messages, in pieces.
-    pub fn case(&mut self, random: &mut Random) -> Result<(), (String, Vec<u8>)> {
+    fn case(&mut self, random: &mut Random) -> Result<(), String> {
         let chosen = random.below(VERSIONS.len());
         let (version, robots) = (VERSIONS[chosen], random.below(2));
         let direction = [Direction::ToRobot, Direction::ToClient][robots];
         let valid = &self.messages[chosen][robots];
-        let mut bytes = Vec::new();
-        let mut begins = Vec::new();
-        for _ in 0..=random.below(4) {
-            begins.push(bytes.len());
+        let bytes = &mut self.bytes;
+        bytes.clear();
+        let mut begins = [0; 4];
+        let count = 1 + random.below(4);
+        for begin in &mut begins[..count] {
+            *begin = bytes.len();
             bytes.extend(&valid[random.below(valid.len())]);
         }
         for _ in 0..=random.below(3) {
-            damage(&mut bytes, &begins, random);
+            let damage = damage(bytes, &begins[..count], random);
+            self.damages.count(damage, 0);
         }
-        let cuts: Vec<usize> = (0..random.below(6))
-            .map(|_| random.below(bytes.len() + 1))
-            .collect();
-        let rows = &mut self.rows[2 * chosen + robots..];
-        let told = catch_unwind(|| tell(version, direction, &bytes, cuts));
-        let told = told.unwrap_or_else(|_| Err("panic".into()));
-        let (outcomes, lost) = told.map_err(|why| (why, bytes))?;
+        let (outcomes, lost) = tell(version, direction, bytes, random.cuts(bytes.len()))?;
         for outcome in outcomes {
-            let place = OUTCOMES.iter().position(|it| it.0 == outcome);
-            rows[0].counts[place.expect("in the list")] += 1;
+            self.outcomes.count(outcome as usize, 2 * chosen + robots);
         }
-        let stream = self.rows.last_mut().expect("a row");
-        stream.counts[usize::from(lost)] += 1;
+        self.streams.count(usize::from(lost), 0);
         Ok(())
+    }
+
+    fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn tables(self) -> Vec<Table> {
+        vec![self.damages, self.outcomes, self.streams]
     }
 }
 
@@ -220,14 +233,13 @@ fn tell(
     version: Version,
     direction: Direction,
     bytes: &[u8],
-    mut cuts: Vec<usize>,
+    cuts: Vec<usize>,
 ) -> Result<(Vec<Outcome>, bool), String> {
-    let (pieces, must_be_lost) = pieces(bytes);
-    let mut pieces = pieces.iter();
+    let pieces = pieces(bytes, SIZE_MAX);
+    let must_be_lost = pieces.is_lost;
+    let mut pieces = pieces.messages.iter();
     let mut stream = Stream::new([0; BUFFER], SIZE_MAX).map_err(|error| error.to_string())?;
     let (mut outcomes, mut lost, mut begin) = (Vec::new(), false, 0);
-    cuts.push(bytes.len());
-    cuts.sort_unstable();
     for cut in cuts {
         let mut rest = &bytes[begin..cut];
         begin = cut;
@@ -263,14 +275,18 @@ fn tell(
     Ok((outcomes, lost))
 }
 
-fn damage(bytes: &mut Vec<u8>, begins: &[usize], random: &mut Random) {
+/// Which damage it was, to messages that begin there.
+pub fn damage(bytes: &mut Vec<u8>, begins: &[usize], random: &mut Random) -> usize {
     let begin = random.pick(begins);
-    match random.below(6) {
-        0 => random.damage(bytes),
-        // A header: code, id, size.
-        1 | 2 if begin + 12 <= bytes.len() => {
+    let behind = bytes.len().saturating_sub(begin + 12);
+    let damage = random.pick(&[0, 1, 2, 2, 3, 3, 4]);
+    match damage {
+        0 => random.flip(bytes),
+        1 => random.set(bytes),
+        // Code, id, size.
+        2 if begin + 12 <= bytes.len() => {
             let at = begin + random.pick(&[0, 4, 8, 8]);
-            let any = random.0.next_u32();
+            let any = random.bits();
             let values = [
                 0,
                 1,
@@ -290,10 +306,9 @@ fn damage(bytes: &mut Vec<u8>, begins: &[usize], random: &mut Random) {
             ];
             bytes[at..at + 4].copy_from_slice(&random.pick(&values).to_le_bytes());
         }
-        // The begin of a payload: statuses, codes, truth values.
-        3 | 4 if begin + 12 < bytes.len() => {
-            let len = bytes.len() - begin - 12;
-            let at = begin + 12 + random.pick(&[0, 0, 0, 1, 4, 56, 153]).min(len - 1);
+        // Its begin: statuses, codes, truth values.
+        3 if behind > 0 => {
+            let at = begin + 12 + random.pick(&[0, 0, 0, 1, 4, 56, 153]).min(behind - 1);
             bytes[at] = random.below(14) as u8;
         }
         // Cut off, or longer.
@@ -301,6 +316,8 @@ fn damage(bytes: &mut Vec<u8>, begins: &[usize], random: &mut Random) {
             let any = random.below(bytes.len() + 1);
             let len = random.pick(&[any, bytes.len() + 1]);
             bytes.resize(len, 0);
+            return 4;
         }
     }
+    damage
 }
