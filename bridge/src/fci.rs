@@ -189,10 +189,8 @@ impl Protocol for Fci {
         let newest = self.sent.recent().map(|(_, own)| *own);
         let own = self.sent_as(&reported).map(|(_, own)| *own);
         // A torque that is none of ours has been cut by the robot, or damaged on its way.
-        self.used = own
-            .or(newest)
-            .or(can_be.then_some(reported))
-            .unwrap_or_else(zeros);
+        // A motion begins without torque, whatever a damaged state says.
+        self.used = own.or(newest).unwrap_or_else(zeros);
         let acted = match own {
             None if can_be => reported,
             _ => self.used,

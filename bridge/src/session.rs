@@ -212,6 +212,7 @@ impl<P: Protocol> Session<P> {
             return Outcome::Doubted;
         }
         if let Err(error) = self.take_cycle(&incoming) {
+            self.link = before;
             return Outcome::Unusable(error);
         }
         self.cycle += 1 + u64::from(lost);
@@ -278,8 +279,15 @@ impl<P: Protocol> Session<P> {
         if known || self.first_command.is_some() {
             return Ok(());
         }
-        self.config.controller.cycle_s = period;
-        let controller = (self.config.law)(&self.config.arm, &self.config.controller)?;
+        let before = core::mem::replace(&mut self.config.controller.cycle_s, period);
+        let controller = match (self.config.law)(&self.config.arm, &self.config.controller) {
+            Ok(controller) => controller,
+            Err(error) => {
+                // A measurement without a cycle is not to have that one.
+                self.config.controller.cycle_s = before;
+                return Err(error);
+            }
+        };
         self.cycle_s = period;
         self.posture = incoming.q;
         self.controller = Some(controller);

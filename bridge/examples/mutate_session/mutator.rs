@@ -1,66 +1,79 @@
-//! A session between good and damaged measurements.
+//! A session between good and damaged measurements, and its twin that gets only what the session has
+//! taken: what is refused must not change a byte of any later answer.
 
-use std::fmt;
+#[path = "mutator/fci.rs"]
+mod fci;
+#[path = "mutator/lwr.rs"]
+mod lwr;
 
-use arms::{LWR_IV, LWR_IV_FLANGE, LWR_IV_STIFFNESS};
-use bridge::lwr::{ANSWER_LEN, Lwr};
-use bridge::session::{Outcome, Phase, Session, SessionConfig};
+use std::mem::size_of_val;
+
+use bridge::protocol::Protocol;
+use bridge::session::{Outcome, Phase, Session};
 use bridge::source::ReferenceSource;
-use controller_core::law::null_space::NullDamping;
-use controller_core::{Axes, ControllerConfig, NullSpace, Reference, Task, TaskGains, TaskSet};
-use fri::{Command, CommandPacket, ControlScheme, Flags, InterfaceState, Measurement, Quality};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+use controller_core::Reference;
+use hostile::{Cases, Random, Table};
+
+pub use fci::Franka;
+pub use lwr::Kuka;
 
 /// A session is begun anew after so many datagrams: a fault or a stop ends one.
-const SESSION: u64 = 5_000;
+const SESSION: u32 = 1_000;
 
-/// Largest torque on the wire: the limit of the strongest joint plus its gravity [Nm].
-const TORQUE_MAX: f32 = 176.0 + 70.0;
+/// A datagram in so many is a good one.
+const GOOD: usize = 4;
 
-struct Random(ChaCha8Rng);
+/// More bytes than the session itself has: it keeps nothing elsewhere.
+const SIZE_MAX: usize = 96 * 1024;
 
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        (self.0.next_u32() as usize) % limit
-    }
+/// A robot: its measurements, how they are damaged, and what it makes of answers.
+pub trait Robot: Sized {
+    type Protocol: Protocol + Clone;
+
+    /// What it may be: heads of the columns.
+    const HEADS: &'static [&'static str];
+    const DAMAGES: &'static [&'static str];
+    /// Errors of its codec.
+    const ERRORS: &'static [&'static str];
+    /// Rows of [`OUTCOMES`] behind them that cannot be.
+    const IMPOSSIBLE: &'static [usize];
+
+    /// At the beginning of a conversation, and the session that it is with.
+    fn new(column: usize) -> (Self, Session<Self::Protocol>);
+
+    /// The next measurement; the arm has moved a little.
+    fn report(&mut self, bytes: &mut Vec<u8>, random: &mut Random);
+
+    /// Damages a measurement: which damage it was.
+    fn damage(&self, bytes: &mut Vec<u8>, random: &mut Random) -> usize;
+
+    /// What is due to the next measurement.
+    fn attend(&self, session: &mut Session<Self::Protocol>);
+
+    /// What the codec says to a datagram.
+    fn error(&self, bytes: &[u8]) -> Option<<Self::Protocol as Protocol>::Error>;
+
+    /// Its row in [`Self::ERRORS`].
+    fn row(error: <Self::Protocol as Protocol>::Error) -> Option<usize>;
+
+    /// An answer of a session in this phase: whether it carries torque.
+    fn hear(&mut self, answer: &[u8], in_command: bool) -> Result<bool, String>;
 }
 
-/// What became of the datagrams.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Table {
-    /// Answered, and how many of them with torque.
-    pub answered: u64,
-    pub with_torque: u64,
-    /// Refused by the codec.
-    pub rejected: u64,
-    /// Repeated, overtaken, or with a counter that cannot be.
-    pub stale: u64,
-    /// With a cycle that the controller cannot have.
-    pub unusable: u64,
-    /// Sessions, and how many ended by a fault or a stop.
-    pub sessions: u64,
-    pub ended: u64,
-}
+/// Behind the errors of the codec. The first three are refused.
+pub const OUTCOMES: [&str; 6] = [
+    "stale",
+    "doubted",
+    "unusable",
+    "heard",
+    "answered",
+    "with torque",
+];
 
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} answered ({} with torque), {} rejected, {} stale, {} unusable; \
-             {} sessions, {} ended by what they were told",
-            self.answered,
-            self.with_torque,
-            self.rejected,
-            self.stale,
-            self.unusable,
-            self.sessions,
-            self.ended
-        )
-    }
-}
+const TAKEN: usize = 3;
 
 /// Holds where it starts.
+#[derive(Clone)]
 struct Rest(Reference<f64>);
 
 impl ReferenceSource for Rest {
@@ -73,168 +86,159 @@ impl ReferenceSource for Rest {
     }
 }
 
-fn session() -> Session<Lwr> {
-    let flange = Task::position(LWR_IV_FLANGE, Axes::XYZ, TaskGains::uniform(400.0, 40.0));
-    let controller = ControllerConfig {
-        tasks: TaskSet::new(&[flange]).expect("a task that can be"),
-        null_space: NullSpace {
-            damping: NullDamping::Inertia(10.0),
-            ..NullSpace::diagonal(LWR_IV_STIFFNESS, [1.0; 7])
-        },
-        observer_gain: [50.0; 7],
-        cycle_s: 0.002,
-        dead_cycles: 0,
-    };
-    Session::new(
-        Lwr::new(),
-        SessionConfig {
-            doubted_max: 2,
-            ..SessionConfig::new(&LWR_IV, controller, LWR_IV_FLANGE, 1e6)
-        },
-    )
+/// A conversation.
+struct Walk<R: Robot> {
+    robot: R,
+    session: Box<Session<R::Protocol>>,
+    rest: Rest,
+    /// The same without what was refused, while anything was.
+    twin: Box<Session<R::Protocol>>,
+    twins_rest: Rest,
+    has_twin: bool,
+    /// What the robot says now, and whether the next is due: it has been taken, or has come
+    /// as it is.
+    measurement: Vec<u8>,
+    is_due: bool,
+    datagrams: u32,
 }
 
-fn measurement() -> Measurement {
-    let mut measurement = Measurement {
-        state: InterfaceState::Command,
-        quality: Quality::Perfect,
-        period_s: 0.002,
-        command_period_s: 0.002,
-        joint_position: [0.0, 0.61, 0.0, -1.40, 0.35, 1.05, 0.0],
-        ..Measurement::default()
-    };
-    measurement.drives.power = 0x7F;
-    measurement.drives.control = ControlScheme::JointImpedance;
-    measurement
+impl<R: Robot> Walk<R> {
+    fn new(column: usize) -> Self {
+        let (robot, session) = R::new(column);
+        let (twin, rest) = (session.clone(), Rest(Reference::hold(0, [0.0; 7])));
+        Self {
+            robot,
+            session: Box::new(session),
+            rest: rest.clone(),
+            twin: Box::new(twin),
+            twins_rest: rest,
+            has_twin: false,
+            measurement: Vec::new(),
+            is_due: true,
+            datagrams: 0,
+        }
+    }
 }
 
-/// Sends `count` datagrams, two thirds of them damaged.
-///
-/// # Errors
-/// An answer that should not be, with the number of the datagram.
-pub fn run(count: u64, seed: u64) -> Result<Table, String> {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
-    let mut table = Table::default();
-    let (mut robot, mut session, mut rest) =
-        (measurement(), session(), Rest(Reference::hold(0, [0.0; 7])));
-    for number in 0..count {
-        if number % SESSION == 0 {
-            table.sessions += 1;
-            session = self::session();
-            robot = measurement();
+/// Conversations of every kind of a robot, and what became of their datagrams.
+pub struct Sessions<R: Robot> {
+    walks: Vec<Walk<R>>,
+    bytes: Vec<u8>,
+    damages: Table,
+    errors: Table,
+    outcomes: Table,
+    ends: Table,
+}
+
+impl<R: Robot> Sessions<R> {
+    pub fn new() -> Self {
+        let mut damages = Table::new("damage", R::DAMAGES);
+        let mut errors = Table::new("rejected", R::ERRORS);
+        let mut outcomes = Table::new("session", &OUTCOMES);
+        let mut ends = Table::new("session ends", &["by itself", "by the harness"]);
+        for head in R::HEADS {
+            damages = damages.with(*head, &[]);
+            errors = errors.with(*head, &[]);
+            outcomes = outcomes.with(*head, R::IMPOSSIBLE);
+            ends = ends.with(*head, &[]);
         }
-        robot.header.counter = robot.header.counter.wrapping_add(1);
-        // The arm moves a little, and the robot hears what it is sent.
-        for q in &mut robot.joint_position {
-            *q += (random.below(2001) as f32 - 1000.0) * 1e-8;
+        let walks: Vec<_> = (0..R::HEADS.len()).map(Walk::new).collect();
+        let size = size_of_val(&*walks[0].session);
+        assert!(size < SIZE_MAX, "{size} bytes");
+        Self {
+            walks,
+            bytes: Vec::new(),
+            damages,
+            errors,
+            outcomes,
+            ends,
         }
-        let mut bytes = [0; Measurement::LEN + 16];
-        if let Some(datagram) = bytes.first_chunk_mut() {
-            robot.emit(datagram);
+    }
+}
+
+impl<R: Robot> Cases for Sessions<R> {
+    fn case(&mut self, random: &mut Random) -> Result<(), String> {
+        let column = random.below(self.walks.len());
+        let walk = &mut self.walks[column];
+        walk.datagrams += 1;
+        if walk.is_due {
+            walk.robot.report(&mut walk.measurement, random);
         }
-        let mut length = Measurement::LEN;
-        if random.below(3) > 0 {
-            length = damage(&mut bytes, &mut random);
+        self.bytes.clone_from(&walk.measurement);
+        let good = random.below(GOOD) == 0;
+        if !good {
+            for _ in 0..=random.below(2) {
+                let damage = walk.robot.damage(&mut self.bytes, random);
+                self.damages.count(damage, column);
+            }
         }
-        let phase = session.phase();
-        let mut answer = [0xAA; ANSWER_LEN];
-        let datagram = bytes.get(..length).unwrap_or(&bytes);
-        let outcome = session.receive(datagram, &mut rest, &mut answer);
-        let failure = |text: &str| Err(format!("datagram {number}, {phase:?}: {text}"));
-        match outcome {
+        let phase = walk.session.phase();
+        let failure = |text: String| Err(format!("{}, {phase:?}: {text}", R::HEADS[column]));
+        if !good && !walk.has_twin {
+            walk.twin.clone_from(&walk.session);
+            walk.twins_rest.clone_from(&walk.rest);
+        }
+        let mut answer = R::Protocol::EMPTY;
+        walk.robot.attend(&mut walk.session);
+        let outcome = walk
+            .session
+            .receive(&self.bytes, &mut walk.rest, &mut answer);
+        let empty = answer.as_ref() == R::Protocol::EMPTY.as_ref();
+        let must = walk.robot.error(&self.bytes);
+        let row = match outcome {
+            Outcome::Rejected(error) if must == Some(error) => None,
+            Outcome::Rejected(error) => return failure(format!("{error:?}; expected: {must:?}")),
+            other if must.is_some() => return failure(format!("{other:?}; expected: {must:?}")),
+            Outcome::Stale => Some(0),
+            Outcome::Doubted => Some(1),
+            Outcome::Unusable(_) => Some(2),
+            Outcome::Heard => Some(3),
             Outcome::Answered => {
-                table.answered += 1;
-                let Ok(packet) = CommandPacket::new_checked(answer) else {
-                    return failure("an answer that is none");
-                };
-                let command = Command::parse(&packet);
-                if command.flags != Flags::JOINT_IMPEDANCE {
-                    return failure("other flags");
-                }
-                let torque = command.joint_torque;
-                if torque.iter().any(|torque| torque.abs() > TORQUE_MAX) {
-                    return failure("torque beyond the limits");
-                }
-                let torque = torque.iter().any(|torque| *torque != 0.0);
-                if torque && !session.phase().is_in_command() {
-                    return failure("torque outside command state");
-                }
-                table.with_torque += u64::from(torque);
-                robot.header.reflected = command.header.counter;
-            }
-            refused => {
-                if answer != [0xAA; ANSWER_LEN] {
-                    return failure("an answer to a refused datagram");
-                }
-                match refused {
-                    Outcome::Rejected(_) => table.rejected += 1,
-                    Outcome::Unusable(_) => table.unusable += 1,
-                    _ => table.stale += 1,
+                let in_command = walk.session.phase().is_in_command();
+                match walk.robot.hear(answer.as_ref(), in_command) {
+                    Ok(torque) => Some(4 + usize::from(torque)),
+                    Err(why) => return failure(why),
                 }
             }
+        };
+        match (row, must.map(R::row)) {
+            (Some(row), _) => self.outcomes.count(row, column),
+            (None, Some(Some(row))) => self.errors.count(row, column),
+            (None, _) => return failure(format!("unknown error: {must:?}")),
         }
-        if session.phase() == Phase::Finished {
-            table.ended += 1;
-            session = self::session();
-            robot = measurement();
+        let taken = row.is_some_and(|row| row >= TAKEN);
+        if !taken && !empty {
+            return failure("an answer to a refused datagram".into());
         }
+        walk.is_due = taken || good;
+        if good && walk.has_twin {
+            let mut same = R::Protocol::EMPTY;
+            walk.robot.attend(&mut walk.twin);
+            let twins = (walk.twin).receive(&self.bytes, &mut walk.twins_rest, &mut same);
+            // Behind a counter or a place that was believed wrongly the twin waits longer: datagrams
+            // in a row that do not fit are believed, and it has got fewer of them.
+            let takes = matches!(twins, Outcome::Heard | Outcome::Answered);
+            let (answer, same) = (answer.as_ref(), same.as_ref());
+            if takes && (twins != outcome || same != answer) {
+                return failure(format!(
+                    "{outcome:?} {answer:02x?}; expected: {twins:?} {same:02x?}"
+                ));
+            }
+        }
+        walk.has_twin = !taken && (!good || walk.has_twin);
+        if walk.session.phase() == Phase::Finished || walk.datagrams == SESSION {
+            self.ends
+                .count(usize::from(walk.datagrams == SESSION), column);
+            *walk = Walk::new(column);
+        }
+        Ok(())
     }
-    Ok(table)
-}
 
-/// Changes bytes, and perhaps the length. Returns the length.
-fn damage(bytes: &mut [u8], random: &mut Random) -> usize {
-    match random.below(8) {
-        0 => random.below(bytes.len() + 1),
-        1 => {
-            // A counter that jumps.
-            let jump = random.0.next_u32() as u16;
-            set(bytes, 0, &jump.to_le_bytes());
-            Measurement::LEN
-        }
-        2 => {
-            // State, quality, power, control scheme.
-            let at = [144, 146, 180, 182][random.below(4)];
-            let code = random.below(5) as u16;
-            set(bytes, at, &code.to_le_bytes());
-            Measurement::LEN
-        }
-        3 => {
-            // A real with any bits: period, positions, models.
-            let at = 140 + 4 * random.below((Measurement::LEN - 140) / 4);
-            let bits = random.0.next_u32();
-            set(bytes, at, &bits.to_le_bytes());
-            Measurement::LEN
-        }
-        4 => {
-            // A joint that has moved more than a little.
-            let at = 216 + 4 * random.below(7);
-            let q = (random.below(2000) as f32 - 1000.0) * 1e-3;
-            set(bytes, at, &q.to_le_bytes());
-            Measurement::LEN
-        }
-        5 => {
-            set(
-                bytes,
-                148,
-                &[0.0005f32, 0.001, 0.004, 0.02, 0.05, -0.002][random.below(6)].to_le_bytes(),
-            );
-            Measurement::LEN
-        }
-        _ => {
-            for _ in 0..=random.below(4) {
-                let (at, bit) = (random.below(Measurement::LEN), random.below(8));
-                if let Some(byte) = bytes.get_mut(at) {
-                    *byte ^= 1 << bit;
-                }
-            }
-            Measurement::LEN
-        }
+    fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
-}
 
-fn set(bytes: &mut [u8], at: usize, value: &[u8]) {
-    for (place, byte) in bytes.iter_mut().skip(at).zip(value) {
-        *place = *byte;
+    fn tables(self) -> Vec<Table> {
+        vec![self.damages, self.errors, self.outcomes, self.ends]
     }
 }

@@ -1,8 +1,8 @@
 //! The client's machine against a robot that does what a test says: conversations in good order,
-//! every event of the table, hostile streams.
+//! every event of the table, what is kept of a stream.
 
 mod conversation;
 mod events;
-mod hostile;
+mod memory;
 mod pair;
 mod scripted;

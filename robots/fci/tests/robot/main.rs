@@ -3,6 +3,5 @@
 mod bench;
 mod connection;
 mod courses;
-mod hostile;
 mod limits;
 mod setters;
