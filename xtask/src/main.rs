@@ -12,6 +12,7 @@ mod figures;
 mod fri;
 mod fri_check;
 mod host;
+mod hostile;
 mod limits;
 mod lines;
 mod paced;
@@ -49,6 +50,9 @@ paced [--smoke] [--minutes M | --seconds S] [--load N]
                        At most 0.1 % of the cycles may be without the client's answer in
                        time, its own p99.9 below 1 ms. --smoke: 15 s, 1 thread, and a PC
                        that cannot is no failure, but said
+hostile [COUNT [SEED]] damaged datagrams and streams into the codecs of FRI and FCI, client and
+                       robot of the FCI, and the sessions with both: COUNT for each of seven,
+                       10000000 unless given; seed 1
 lines [REVISION]       lines of code, and of documentation per public item, by package
 missing-m7             prints what has to be installed for the first three, exit code 2 if anything
 
@@ -83,6 +87,7 @@ fn main() -> ExitCode {
         ["fri-m7", "--check", "--serial"] => fri_check::run(Medium::Serial),
         ["board-m7"] => placement::run(),
         ["paced", ref words @ ..] => paced::run(words),
+        ["hostile", ref words @ ..] => hostile::run(words),
         ["lines"] => lines::run(None),
         ["lines", revision] => lines::run(Some(revision)),
         ["missing-m7"] => tools::find(&[QEMU, LLVM]).map(|()| true),
