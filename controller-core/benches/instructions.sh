@@ -3,13 +3,14 @@
 # 2,000 random and 240 adversarial states, those of the FR3 in a tenth of them, cycles in which
 # the references of all levels and the posture jump ("joining") in 16, those of 7, 9 and 12 rows
 # ("rows", and "changing" where all levels come or go) in 16, then each stage alone in
-# 16, then cycles of the velocity-level resolver in the former. Compares the largest counts with
+# 16, then cycles of the velocity-level resolver in the former; at last codec and session of each
+# robot link ("link"). Compares the largest counts with
 # instructions.txt beside this script; --update rewrites that file.
 #
-#   controller-core/benches/instructions.sh [--update|--quick|--arms]
+#   controller-core/benches/instructions.sh [--update|--quick|--arms|--link]
 #
 # --quick takes 20 states and compares nothing; --arms shows the cycles of every arm of the
-# crate arms in 23. Valgrind 3.19 does not know one
+# crate arms in 23; --link counts and compares codecs and sessions only. Valgrind 3.19 does not know one
 # encoding of vmovq between registers (C5 79 D6); should the compiler come to use it,
 # the run ends with an illegal instruction, and a newer Valgrind is needed.
 #
@@ -35,19 +36,19 @@ mode="${1:-}"
 committed=controller-core/benches/instructions.txt
 target="${CARGO_TARGET_DIR:-target}/count"
 export RUSTFLAGS="-C target-cpu=x86-64-v3"
-cargo build --quiet --release -p controller-core --example count_step --target-dir "$target"
-binary="$target/release/examples/count_step"
+[ "$mode" = --link ] ||
+  cargo build --quiet --release -p controller-core --example count_step --target-dir "$target"
+cargo build --quiet --release -p bridge --example count_link --target-dir "$target"
 
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
-# One part of the dump per call of the counted function.
+# One part of the dump per call of the counted function of an example.
 count() {
-  local what="$1" name="$2"
+  local example="$1" what="$2" name="$3"
   valgrind --tool=callgrind --callgrind-out-file="$work/out" --combine-dumps=yes \
-    --dump-line=no --toggle-collect="count_step::cases::stages::$name" \
-    --dump-after="count_step::cases::stages::$name" \
-    "$binary" "$what" > "$work/names" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
+    --dump-line=no --toggle-collect="$example::$name" --dump-after="$example::$name" \
+    "$target/release/examples/$example" "$what" > "$work/names" 2> "$work/log" || { cat "$work/log" >&2; exit 1; }
   awk '/^desc: Trigger: --dump-after/ { wanted = 1 } /^(totals|summary):/ && wanted { print $2; wanted = 0 }' \
     "$work/out" > "$work/counts"
   if [ "$(wc -l < "$work/names")" != "$(wc -l < "$work/counts")" ]; then
@@ -57,12 +58,20 @@ count() {
   paste -d' ' "$work/names" "$work/counts"
   rm "$work/out"
 }
+link() {
+  local name
+  for name in measurement answer fri_session state command fci_session; do
+    count count_link "$name" "calls::$name"
+  done
+}
 case "$mode" in
-  --arms) count arms step ;;
+  --arms) count count_step arms cases::stages::step ;;
+  --link) link ;;
   *)
-    count "$([ "$mode" = --quick ] && echo quick || echo step)" step
-    count stages stage
-    count resolver resolve
+    count count_step "$([ "$mode" = --quick ] && echo quick || echo step)" cases::stages::step
+    count count_step stages cases::stages::stage
+    count count_step resolver cases::stages::resolve
+    [ "$mode" = --quick ] || link
     ;;
 esac > "$work/all"
 
@@ -115,7 +124,7 @@ while read -r case stage max min count; do
       fails "$case step: $max instructions, LWR ${lwr[$levels]}; allowed +4 %"
     fi
   fi
-  [ -z "$mode" ] || continue
+  [ -z "$mode" ] || [ "$mode" = --link ] || continue
   before=$(awk -v case="$case" -v stage="$stage" '$1 == case && $2 == stage { print $3 }' "$committed")
   if [ -z "$before" ]; then
     fails "$case $stage: $max instructions, not in $committed"

@@ -40,9 +40,7 @@ pub fn run(write: bool) -> Outcome {
         if let Some(version) = valgrind.or_else(before) {
             figures.tools.insert("valgrind".into(), version);
         }
-        fs::write(&path, serde_json::to_string_pretty(&figures)? + "\n")?;
-        fs::write(root().join(TABLE), table::page(&figures))?;
-        println!("written: {JSON}, {TABLE}");
+        write_down(&figures)?;
     } else {
         let committed = committed?;
         let larger = compare(&figures.bounded(), &committed.bounded());
@@ -60,6 +58,25 @@ pub fn run(write: bool) -> Outcome {
         println!("{line}");
     }
     Ok(lines.is_empty())
+}
+
+/// Takes the committed counts of host and peers into figures and table, and leaves those of the
+/// target as they are: nothing is measured.
+pub fn write_host() -> Outcome {
+    let path = root().join(JSON);
+    let mut figures: Figures = serde_json::from_str(&fs::read_to_string(&path)?)?;
+    figures.host = host::counts()?;
+    figures.peers = host::peers()?;
+    write_down(&figures)?;
+    Ok(true)
+}
+
+fn write_down(figures: &Figures) -> Result<(), Trouble> {
+    let text = serde_json::to_string_pretty(figures)? + "\n";
+    fs::write(root().join(JSON), text)?;
+    fs::write(root().join(TABLE), table::page(figures))?;
+    println!("written: {JSON}, {TABLE}");
+    Ok(())
 }
 
 fn measure() -> Result<Figures, Trouble> {

@@ -19,6 +19,9 @@ const COUNTS: &str = "controller-core/benches/instructions.txt";
 /// too many dependencies for every run.
 const PEERS: &str = "tests/peers/peers.json";
 
+/// What cases of codec and session of a robot link begin with.
+pub const LINK: &str = "link-";
+
 /// Instructions by case, then by stage; `cycle` for all of it.
 pub type Counts = BTreeMap<String, BTreeMap<String, u64>>;
 
@@ -75,13 +78,14 @@ fn parse(text: &str) -> Result<Counts, Trouble> {
             Some(_) => continue,
             // Of other numbers of rows: likewise.
             None if case.contains("-rows-") => continue,
+            None if case.starts_with(LINK) => (case, ""),
             None => return Err(wrong()),
         };
         let stage = match stage {
             "step" => "cycle".into(),
             stage => stage.replace('_', " "),
         };
-        let case = format!("{experiment} {precision}");
+        let case = format!("{experiment} {precision}").trim_end().to_string();
         counts.entry(case).or_default().insert(stage, count);
     }
     Ok(counts)
@@ -99,6 +103,8 @@ mod tests {
         assert_eq!(counts["two-level f64"]["cycle"], 9000);
         assert_eq!(counts["case-1 f32"]["task rows"], 12);
         assert_eq!(counts["case-1 f32"]["observer input"], 7);
+        let link = parse("link-fci-10 session_audited 27000\n").expect("counts");
+        assert_eq!(link["link-fci-10"]["session audited"], 27000);
         assert_eq!(
             parse("fr3-2-levels-f64 step 9300").expect("counts"),
             Counts::new()

@@ -1,6 +1,7 @@
 //! docs/timing.md from the figures; timing.md beside this file has its text.
 
 use crate::figures::{Controller, Figures, Path, Stage, Way};
+use crate::host::LINK;
 use crate::limits::LIMITS;
 
 /// Core clock of the estimate \[MHz\].
@@ -27,6 +28,7 @@ pub fn page(figures: &Figures) -> String {
         ("{paths}", paths(figures)),
         ("{limits}", limits()),
         ("{stages}", stages(figures)),
+        ("{links}", links(figures)),
         ("{memory}", memory(figures)),
         ("{flash}", image("flash")),
         ("{ram}", image("ram without stack")),
@@ -145,6 +147,31 @@ fn limits() -> String {
         .iter()
         .map(|(what, limit)| format!("{what} | {limit}"));
     table("figure | limit", rows)
+}
+
+/// Codec and session of each robot link, on the host.
+fn links(figures: &Figures) -> String {
+    let rows = figures.host.iter().filter_map(|(case, counts)| {
+        let name = match case.strip_prefix(LINK)? {
+            "fri" => "LWR, FRI".to_string(),
+            other => format!("Panda and FR3, {}", other.replace("fci-", "FCI version ")),
+        };
+        let cell = |names: &[&str]| {
+            let count = names.iter().find_map(|name| counts.get(*name));
+            count.map_or(String::new(), u64::to_string)
+        };
+        Some(format!(
+            "{name} | {} | {} | {} | {}",
+            cell(&["measurement", "state"]),
+            cell(&["command"]),
+            cell(&["session"]),
+            cell(&["session audited"]),
+        ))
+    });
+    table(
+        "link | read what comes | write a command | cycle of the session | with the robot's model",
+        rows,
+    )
 }
 
 /// Stages, cycle and peers of each experiment, both precisions side by side.
