@@ -139,12 +139,20 @@ fn session<P: Protocol>(
     Session::new(protocol, SessionConfig::new(arm, controller, flange, 1e6))
 }
 
+/// What a cycle is.
+type Receive<P> = fn(
+    &mut Session<P>,
+    &[u8],
+    &mut Rest,
+    &mut <P as Protocol>::Answer,
+) -> Outcome<<P as Protocol>::Error>;
+
 /// Runs cycles of a session in motion: the last ones by `counted`, whose name it prints.
 fn cycles<P: Protocol>(
     [function, name]: [&str; 2],
     session: &mut Session<P>,
     mut datagram: impl FnMut(usize, &mut Session<P>) -> Vec<u8>,
-    counted: fn(&mut Session<P>, &[u8], &mut Rest, &mut P::Answer) -> Outcome<P::Error>,
+    counted: Receive<P>,
 ) {
     let mut rest = Rest::new();
     for cycle in 0..BEFORE + COUNTED {

@@ -4,7 +4,6 @@
 #[path = "../fuzz/machines/client.rs"]
 mod client;
 #[path = "data/mod.rs"]
-#[allow(dead_code)] // the layouts are others' affair
 mod data;
 #[path = "../fuzz/machines/robot.rs"]
 mod robot;
