@@ -325,7 +325,7 @@ fn expected(version: Version, piece: &Piece<'_>) -> &'static [usize] {
     }
 }
 
-/// Whole replies, one to each request; two more of a motion or a recovery that ends.
+/// Whole replies, one to each request, and those of motions and of a recovery that end.
 fn check_replies(said: &RobotSaid, script: &Script<Robot<&'static [u8]>>) -> Result<(), String> {
     let mut stream = Stream::new([0; 256], 256).map_err(|error| error.to_string())?;
     let (mut rest, mut count) = (&said.replies[..], 0);
@@ -337,8 +337,12 @@ fn check_replies(said: &RobotSaid, script: &Script<Robot<&'static [u8]>>) -> Res
     // The reply to a recovery comes when it is over.
     let waits = |it: &&Handled| it.kind == Kind::AutomaticErrorRecovery && it.refused.is_none();
     let later = asked.clone().filter(waits).count();
+    // Each StopMove ends a motion, whose second reply comes with its own.
+    let stops = |it: &&Handled| it.kind == Kind::StopMove && it.refused.is_none();
+    let stops = asked.clone().filter(stops).count();
     let asked = asked.count();
-    if !rest.is_empty() || count + later < asked || count > asked + 2 {
+    // One more: of a recovery before.
+    if !rest.is_empty() || count + later < asked || count > asked + stops + 1 {
         return Err(format!("{count} replies to {asked} requests"));
     }
     // None is longer than that of a wall; the model comes with a few more.
