@@ -61,7 +61,7 @@ pub(super) fn cut_together<T: Real>(
         }
         let excess = squared.square_root().most(T::ONE);
         is_cut |= excess > T::ONE;
-        *cut = *cut / excess;
+        *cut /= excess;
     }
     (cut, is_cut)
 }
