@@ -8,12 +8,12 @@ use controller_core::law::null_space::NullDamping;
 
 use super::{ReferenceSpec, Scenario, TimedTransition};
 use crate::invalid::Invalid;
+use crate::names::RobotInterface;
 use crate::terminal::tell;
 
 impl Scenario {
-    /// The session that runs this scenario for `duration_s` \[s\] on a robot whose
-    /// torques act `dead_cycles` cycles after they arrive. The null-space damping
-    /// is the inertia-shaped one: speeds come from an estimator, which is late.
+    /// The session that runs this scenario for `duration_s` \[s\] on an LWR whose
+    /// torques act `dead_cycles` cycles after they arrive.
     ///
     /// # Errors
     /// Tasks that the core refuses.
@@ -22,8 +22,24 @@ impl Scenario {
         dead_cycles: u8,
         duration_s: f64,
     ) -> Result<SessionConfig, Invalid> {
+        self.session_config_for(RobotInterface::Lwr, dead_cycles, duration_s)
+    }
+
+    /// The same on a robot with this interface. Where speeds come from an estimator, which is late,
+    /// the null-space damping is the inertia-shaped one.
+    ///
+    /// # Errors
+    /// Tasks that the core refuses.
+    pub fn session_config_for(
+        &self,
+        robot: RobotInterface,
+        dead_cycles: u8,
+        duration_s: f64,
+    ) -> Result<SessionConfig, Invalid> {
         let mut controller = self.controller_config(dead_cycles)?;
-        controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
+        if robot == RobotInterface::Lwr {
+            controller.null_space.damping = NullDamping::Inertia(self.null_space.damping_rate);
+        }
         let arm = self.arm().parameters;
         Ok(SessionConfig {
             law: self.law.maker(),

@@ -13,7 +13,7 @@ use cell::terminal::tell;
 use controller_core::TaskSet;
 use controller_core::arm::{ArmParameters, Tool};
 use controller_core::joint::JointVector;
-use fci::client::{Cause, Client, Duty, Start, Stop};
+use fci::client::{COMPLIANT, Cause, Client, Duty, Start, Stop};
 use fci::{StatePacket, Version};
 
 use super::options::{RunOptions, stop_flag, wrong_start};
@@ -25,10 +25,6 @@ use crate::fci::model::UrdfAudit;
 use crate::recorder::Recorder;
 use crate::run::Counts;
 use crate::summary::{FciSummary, wished_end};
-
-/// Torque and force that count as a collision unless something else is said \[Nm\], \[N\]: those of the
-/// vendor's example of a compliant arm.
-const COLLISION: f64 = 100.0;
 
 /// Answers behind which the success rate is that of 100 commands.
 const RATED: u64 = 100;
@@ -153,7 +149,7 @@ impl RunOptions {
             let allowed = "the address of the robot, such as 172.16.0.2";
             return Err(Invalid::new("--address", "none", allowed));
         };
-        let config = self.fci_config(scenario)?;
+        let config = self.config(scenario)?;
         let tasks = config.controller.tasks;
         let arm = scenario.arm();
         self.prepare_files()?;
@@ -171,8 +167,8 @@ impl RunOptions {
             table: scenario.robot.table()?,
             tool: arm.tool(),
             start: Start::uniform(
-                self.collision_torque.unwrap_or(COLLISION),
-                self.collision_force.unwrap_or(COLLISION),
+                self.collision_torque.unwrap_or(COMPLIANT),
+                self.collision_force.unwrap_or(COMPLIANT),
             ),
             required: self.required_start(scenario),
             refused: None,
@@ -260,15 +256,6 @@ impl RunOptions {
         self.report(&summary, &host.flight)?;
         recorded?;
         Ok(summary.exit_code)
-    }
-
-    /// The scenario's session, with the null-space damping as the scenario has it: the robot
-    /// measures speeds.
-    fn fci_config(&self, scenario: &Scenario) -> Result<SessionConfig, Invalid> {
-        let mut config = self.config(scenario)?;
-        let own = scenario.controller_config(self.dead_cycles)?.null_space;
-        config.controller.null_space.damping = own.damping;
-        Ok(config)
     }
 }
 

@@ -227,7 +227,8 @@ impl RunOptions {
     /// What every robot's session has.
     pub(super) fn config(&self, scenario: &Scenario) -> Result<SessionConfig, Invalid> {
         let duration_s = self.duration.unwrap_or(scenario.duration_s);
-        let mut config = scenario.session_config(self.dead_cycles, duration_s)?;
+        let robot = self.robot()?;
+        let mut config = scenario.session_config_for(robot, self.dead_cycles, duration_s)?;
         let factor = NullStiffness::from_name(&self.null_stiffness)?.factor();
         config.controller.null_space = config.controller.null_space.stiffened(factor);
         config.dry = self.dry;

@@ -26,5 +26,5 @@ mod outgoing;
 mod said;
 
 pub use event::{Awaited, Cause, Event, Stop};
-pub use facts::{Duty, Facts, ModelSink, Phase, Start};
+pub use facts::{COMPLIANT, Duty, Facts, ModelSink, Phase, Start};
 pub use machine::{Client, MODEL_LEN_MAX, PATIENCE};

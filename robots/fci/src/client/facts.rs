@@ -101,6 +101,9 @@ impl Facts {
     }
 }
 
+/// Torque \[Nm\] and force \[N\] that count as a collision in the vendor's example of a compliant arm.
+pub const COMPLIANT: f64 = 100.0;
+
 /// What is set before the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Start {
@@ -112,6 +115,9 @@ pub struct Start {
 }
 
 impl Start {
+    /// The thresholds of a compliant arm, and no load.
+    pub const COMPLIANT: Self = Self::uniform(COMPLIANT, COMPLIANT);
+
     /// Contact and collision at the same torque \[Nm\] of every joint and the same force \[N\] and
     /// moment \[Nm\] along and about every axis, in motion or not, and no load.
     #[must_use]
