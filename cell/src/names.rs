@@ -1,5 +1,7 @@
 //! Choices that have a name on the command line and in files.
 
+use controller_core::arm::ArmParameters;
+
 use crate::invalid::Invalid;
 use crate::ranges::NAME_LETTERS;
 
@@ -108,8 +110,23 @@ pub enum MeasurementKind {
     /// The same under the conditions of the link: the arm is held before time 0, speeds are
     /// estimated from positions, and the robot adds gravity by itself.
     LikeFri,
-    /// Positions in the datagrams of FRI; speeds are estimated.
+    /// Positions in the datagrams of FRI, whatever the arm; speeds are estimated.
     Fri,
+    /// What the robot that has this arm sends: Panda and FR3 states of the FCI, with speeds; any
+    /// other as over FRI.
+    Link,
+}
+
+impl MeasurementKind {
+    /// The same with the link of `arm` by its name: [`MeasurementKind::Link`] is left where that is
+    /// the FCI.
+    #[must_use]
+    pub fn of_arm(self, arm: &ArmParameters) -> Self {
+        match self {
+            Self::Link if RobotInterface::of(arm) == RobotInterface::Lwr => Self::Fri,
+            other => other,
+        }
+    }
 }
 
 impl Named for MeasurementKind {
@@ -118,6 +135,7 @@ impl Named for MeasurementKind {
         ("direct", Self::Direct),
         ("like-fri", Self::LikeFri),
         ("fri", Self::Fri),
+        ("link", Self::Link),
     ];
 }
 
@@ -129,6 +147,20 @@ pub enum RobotInterface {
     Lwr,
     /// A Panda or FR3, by the Franka Control Interface.
     Fci,
+}
+
+impl RobotInterface {
+    /// That of an arm, by the name of its table: arms without one of their own are led by FRI in
+    /// simulation.
+    #[must_use]
+    pub fn of(arm: &ArmParameters) -> Self {
+        let franka = [&arms::PANDA, &arms::PANDA_IDENTIFIED, &arms::FR3];
+        if franka.iter().any(|own| own.name == arm.name) {
+            Self::Fci
+        } else {
+            Self::Lwr
+        }
+    }
 }
 
 impl Named for RobotInterface {

@@ -8,20 +8,23 @@ use bridge::lwr::Lwr;
 use bridge::session::SessionConfig;
 use controller_core::joint::JointState;
 use controller_core::{Controller, ControllerConfig, Measurement, Reference, State};
+use fci::Version;
 
 use crate::after_fault::{Acting, Ending};
 use crate::arm_points::origins;
 use crate::contact::Contacts;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::interrupt;
-use crate::loopback::{self, BridgeClient};
+use crate::loopback::{self, BridgeClient, FciClient, Local};
 use crate::metrics::Metrics;
 use crate::plant::{Plant, PlantOptions};
-use crate::robot::{self, Driving, LwrRobot, RobotOptions, RobotSetup};
+use crate::robot::{
+    self, ControlBox, Driving, FciOptions, FciRobot, LwrRobot, Robot, RobotOptions, RobotSetup,
+};
 use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
-use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind};
+use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, RobotInterface};
 use cell::scenario::Scenario;
 use record::run::Sample;
 
@@ -82,7 +85,7 @@ impl Experiment {
     /// # Errors
     /// Tasks that the core does not take.
     pub fn controller_config(&self) -> Result<ControllerConfig, Invalid> {
-        if self.measurement != MeasurementKind::Direct {
+        if self.way() != MeasurementKind::Direct {
             return Ok(self.session()?.controller);
         }
         let dead_cycles = self.options.dead_cycles as u8;
@@ -91,34 +94,78 @@ impl Experiment {
         Ok(config)
     }
 
-    /// The bridge of a run over FRI.
+    /// How the controller sees the arm: the link is that of the arm.
+    #[must_use]
+    pub fn way(&self) -> MeasurementKind {
+        self.measurement.of_arm(&self.scenario.arm().parameters)
+    }
+
+    /// The bridge of a run over a link.
     fn session(&self) -> Result<SessionConfig, Invalid> {
         let (scenario, dead_cycles) = (&self.scenario, self.options.dead_cycles as u8);
-        let mut config = scenario.session_config(dead_cycles, scenario.duration_s)?;
+        let robot = match self.way() {
+            MeasurementKind::Link => {
+                FciOptions::check_cycle(scenario)?;
+                RobotInterface::Fci
+            }
+            _ => RobotInterface::Lwr,
+        };
+        let mut config = scenario.session_config_for(robot, dead_cycles, scenario.duration_s)?;
         let null_space = &mut config.controller.null_space;
         *null_space = null_space.stiffened(self.null_stiffness.factor());
         Ok(config)
+    }
+
+    /// The robot of a run over a link.
+    fn robot<O>(&self, options: O) -> RobotSetup<O> {
+        RobotSetup {
+            scenario: self.scenario.clone(),
+            plant: self.plant,
+            contacts: self.contacts,
+            seed: self.seed,
+            plant_options: self.options,
+            options,
+        }
     }
 
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
         controller: &Controller<f64>,
+        sink: impl FnMut(&Sample) -> io::Result<()>,
+        progress: impl FnMut(f64),
+    ) -> io::Result<Summary> {
+        let config = self.session().map_err(io::Error::other)?;
+        let changes = self.scenario.transitions(controller);
+        let changes = changes.map_err(io::Error::other)?;
+        let robot = LwrRobot::new(self.robot(RobotOptions::default()));
+        let client = BridgeClient::new(Lwr::new(), config, &self.scenario).changing(changes);
+        self.run_over_link(robot, client, sink, progress)
+    }
+
+    /// Runs it over FCI.
+    fn run_over_fci(
+        &self,
+        controller: &Controller<f64>,
+        sink: impl FnMut(&Sample) -> io::Result<()>,
+        progress: impl FnMut(f64),
+    ) -> io::Result<Summary> {
+        let config = self.session().map_err(io::Error::other)?;
+        let changes = self.scenario.transitions(controller);
+        let changes = changes.map_err(io::Error::other)?;
+        let options = FciOptions::of(&self.scenario, Version::V10);
+        let robot = FciRobot::new(self.robot(options));
+        let client = FciClient::new(config, &self.scenario, false).changing(changes);
+        self.run_over_link(robot, client, sink, progress)
+    }
+
+    fn run_over_link<B: ControlBox>(
+        &self,
+        mut robot: Robot<B>,
+        mut client: impl Local<B>,
         mut sink: impl FnMut(&Sample) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
-        let config = self.session().map_err(io::Error::other)?;
-        let mut robot = LwrRobot::new(RobotSetup {
-            scenario: self.scenario.clone(),
-            plant: self.plant,
-            contacts: self.contacts,
-            seed: self.seed,
-            plant_options: self.options,
-            options: RobotOptions::default(),
-        });
-        let changes = self.scenario.transitions(controller);
-        let changes = changes.map_err(io::Error::other)?;
-        let mut client = BridgeClient::new(Lwr::new(), config, &self.scenario).changing(changes);
         loopback::run(&mut robot, &mut client, &[], |instant, _| {
             progress(instant.t_s / self.scenario.duration_s);
             sink(instant)
@@ -152,8 +199,10 @@ impl Experiment {
         mut progress: impl FnMut(f64),
         mut watch: impl FnMut(&Watched<'_>),
     ) -> io::Result<Summary> {
-        if self.measurement == MeasurementKind::Fri {
-            return self.run_over_fri(controller, sink, progress);
+        match self.way() {
+            MeasurementKind::Fri => return self.run_over_fri(controller, sink, progress),
+            MeasurementKind::Link => return self.run_over_fci(controller, sink, progress),
+            MeasurementKind::Direct | MeasurementKind::LikeFri => {}
         }
         let scenario = &self.scenario;
         let arm = scenario.arm().parameters;
@@ -295,7 +344,7 @@ impl Experiment {
         let conditions = Conditions {
             plant: self.plant,
             contacts: self.contacts,
-            measurement: self.measurement,
+            measurement: self.way(),
             dead_cycles: self.options.dead_cycles,
         };
         Summary {

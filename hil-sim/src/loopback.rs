@@ -1,7 +1,9 @@
-//! The robot's side and the bridge in one process: `--measurement fri`.
+//! The robot's side and the bridge in one process: `--measurement link`.
 //!
-//! The same datagrams go from hand to hand that would go over UDP in lock-step,
-//! so the motion is the same to the last bit.
+//! The same bytes go from hand to hand that would go over sockets in lock-step, so the motion is the
+//! same to the last bit.
+
+mod fci;
 
 use std::io;
 
@@ -9,10 +11,12 @@ use bridge::protocol::Protocol;
 use bridge::session::{Outcome, Session, SessionConfig};
 
 use crate::interrupt;
-use crate::link::{Expect, Fault, LockStep, Peer};
+use crate::link::{Expect, Fault, LockStep, Peer, finish, is_over};
 use crate::robot::{ControlBox, Robot};
 use cell::scenario::{Scenario, ScenarioSource, TimedTransition};
 use record::run::Sample;
+
+pub use self::fci::FciClient;
 
 /// The bridge as a client in this process, with its end of the robot's protocol.
 #[derive(Debug)]
@@ -40,22 +44,55 @@ impl<P: Protocol> BridgeClient<P> {
             ..self
         }
     }
+
+    /// Takes a measurement; its answer, if it gets one. What the bridge doubts it leaves without:
+    /// it is not gone.
+    fn answer(&mut self, measurement: &[u8]) -> Option<Vec<u8>> {
+        let mut answer = P::EMPTY;
+        let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
+        (outcome == Outcome::Answered).then(|| answer.as_ref().to_vec())
+    }
 }
 
 impl<B: ControlBox, P: Protocol> Peer<B> for BridgeClient<P> {
     fn exchange(
         &mut self,
+        _: &mut Robot<B>,
         measurement: &[u8],
         _: Expect,
         answers: &mut Vec<Vec<u8>>,
     ) -> io::Result<bool> {
-        let mut answer = P::EMPTY;
-        let outcome = (self.session).receive(measurement, &mut self.source, &mut answer);
-        if outcome == Outcome::Answered {
-            answers.push(answer.as_ref().to_vec());
-        }
-        // What it doubts it leaves without answer: it is not gone.
+        answers.extend(self.answer(measurement));
         Ok(true)
+    }
+
+    fn tell(&self, robot: &mut Robot<B>) {
+        let step = self.session.last().and_then(|cycle| cycle.step);
+        robot.hear(step.map(|step| step.status));
+    }
+}
+
+/// A client in this process.
+pub trait Local<B: ControlBox>: Peer<B> {
+    /// Its end of the robot's protocol.
+    type Protocol: Protocol;
+
+    /// Its conversation.
+    fn session(&self) -> &Session<Self::Protocol>;
+
+    /// Why it has left, if it has.
+    fn why_left(&self) -> Option<String>;
+}
+
+impl<B: ControlBox, P: Protocol> Local<B> for BridgeClient<P> {
+    type Protocol = P;
+
+    fn session(&self) -> &Session<P> {
+        &self.session
+    }
+
+    fn why_left(&self) -> Option<String> {
+        None
     }
 }
 
@@ -63,25 +100,25 @@ impl<B: ControlBox, P: Protocol> Peer<B> for BridgeClient<P> {
 /// from time 0 on is shown to `sink`.
 ///
 /// # Errors
-/// Those of `sink`.
-pub fn run<B: ControlBox, P: Protocol>(
+/// Those of `sink`, and why a client has left before anything has begun.
+pub fn run<B: ControlBox, C: Local<B>>(
     robot: &mut Robot<B>,
-    client: &mut BridgeClient<P>,
+    client: &mut C,
     faults: &[Fault],
-    mut sink: impl FnMut(&Sample, &Session<P>) -> io::Result<()>,
+    mut sink: impl FnMut(&Sample, &Session<C::Protocol>) -> io::Result<()>,
 ) -> io::Result<()> {
     let cycle_s = robot.setup().scenario.cycle_s();
     let mut link = LockStep::new(faults, cycle_s, robot.setup().seed);
-    while !robot.is_finished() {
+    while !is_over(robot, client) {
         if let Some(stop) = interrupt::stop() {
             robot.abort(stop);
         }
-        link.cycle(robot, client)?;
-        let step = client.session.last().and_then(|cycle| cycle.step);
-        robot.hear(step.map(|step| step.status));
-        if let Some(instant) = robot.advance() {
-            sink(&instant, &client.session)?;
+        if let (Some(why), false) = (client.why_left(), robot.has_begun()) {
+            return Err(io::Error::other(why));
+        }
+        if let Some(instant) = link.step(robot, client)? {
+            sink(&instant, client.session())?;
         }
     }
-    link.finish(robot, client)
+    finish(robot, client)
 }

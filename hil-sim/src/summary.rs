@@ -215,10 +215,12 @@ pub struct Conditions {
 /// Holds the figures against the limits that the scenario sets for these
 /// conditions.
 fn judge(scenario: &Scenario, conditions: &Conditions, levels: &[LevelFigures]) -> Vec<Acceptance> {
+    let arm = scenario.arm().parameters;
+    let way = |name: &str| MeasurementKind::from_name(name).map(|kind| kind.of_arm(&arm));
     let applies = scenario.limits.iter().filter(|limit| {
         PlantKind::from_name(&limit.plant) == Ok(conditions.plant)
             && limit.contacts == conditions.contacts
-            && MeasurementKind::from_name(&limit.measurement) == Ok(conditions.measurement)
+            && way(&limit.measurement) == Ok(conditions.measurement)
             && limit.dead_cycles == conditions.dead_cycles
     });
     applies

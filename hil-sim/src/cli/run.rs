@@ -46,7 +46,7 @@ pub struct RunOptions {
     /// Null-space stiffness: low (x 0.2), normal, high (x 4)
     #[arg(long, default_value = "normal")]
     null_stiffness: String,
-    /// How the controller sees the arm: direct; fri: through the datagrams of the robot link, held for a second before time 0, speeds estimated; like-fri: the same without datagrams
+    /// How the controller sees the arm: direct; link: through the bytes of the arm's robot link, held for a second before time 0: of Panda and FR3 the FCI, of any other FRI; fri: that of FRI for every arm, speeds estimated; like-fri: the same without datagrams
     #[arg(long, default_value = "direct")]
     measurement: String,
     #[arg(long, value_parser = whole(DEAD_CYCLES),

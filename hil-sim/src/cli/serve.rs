@@ -6,6 +6,7 @@ mod kind;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
+use ::fci::Version;
 use clap::Args;
 
 use kind::Kind;
@@ -18,14 +19,14 @@ use crate::output::Folder;
 use crate::plant::PlantOptions;
 use crate::report::Choices;
 use crate::robot::{
-    FciOptions, Krl, LinkFigures, LwrRobot, RatingOptions, RobotAdds, RobotOptions, RobotSetup,
-    scheme_named,
+    ControlBox, FciOptions, Krl, LinkFigures, LwrRobot, RatingOptions, Robot, RobotAdds,
+    RobotOptions, RobotSetup, scheme_named,
 };
 use crate::serve::{Client, End, FciService, Operator, Serial, Service, Transport, Udp};
 use crate::summary::Summary;
 use cell::arguments::values::{number, peer, processor, whole};
 use cell::invalid::Invalid;
-use cell::names::{MeasurementKind, Named, PlantKind};
+use cell::names::{Named, PlantKind};
 use cell::ranges::{CYCLE_MS, DEAD_CYCLES, DURATION_S, Range, SEED, WAIT_S};
 use cell::realtime::Realtime;
 use cell::scenario::{Scenario, built_in_names};
@@ -65,13 +66,16 @@ const KRL_STIFFNESS: Range<f64> = Range::above(0.0, 2000.0);
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct ServeOptions {
+    #[arg(value_name = "SCENARIO",
+        help = format!("Built-in scenario ({}), or a TOML file: arm, start, contacts, what is \
+            judged [default: two-level, of fci two-level-fr3]", built_in_names()))]
+    experiment: Option<String>,
+    /// The same
+    #[arg(long, value_name = "SCENARIO", conflicts_with = "experiment")]
+    scenario: Option<String>,
     /// Which robot: lwr (KUKA's FRI), fci (Franka's control interface)
     #[arg(long, default_value = "lwr")]
     robot: String,
-    #[arg(long,
-        help = format!("Built-in scenario ({}), or a TOML file: arm, start, contacts, what is \
-            judged [default: two-level, of fci two-level-fr3]", built_in_names()))]
-    scenario: Option<String>,
     /// The arm: ideal, realistic
     #[arg(long, default_value = "realistic")]
     plant: String,
@@ -267,7 +271,8 @@ impl ServeOptions {
         } = self.setup(Kind::Fci)?;
         let out = self.folder(&scenario);
         let number = self.version.unwrap_or(VERSIONS.max);
-        let mut fci = FciOptions::of(&scenario, number).map_err(Invalid::line)?;
+        let version = Version::from_number(number).map_err(Invalid::line)?;
+        let mut fci = FciOptions::of(&scenario, version);
         fci.drives_off_s = options.drives_off_s;
         let setup = RobotSetup {
             scenario,
@@ -286,7 +291,7 @@ impl ServeOptions {
             summary,
             text,
         } = served;
-        self.conclude(files, robot.setup(), &summary, &text, &out)
+        self.conclude(files, &robot, &summary, &text, &out)
     }
 
     /// The output folder.
@@ -338,22 +343,23 @@ impl ServeOptions {
             link.realtime = realtime;
         }
         let line = summary.link.as_ref().map_or(String::new(), link_line);
-        self.conclude(files, robot.setup(), &summary, &line, &out)
+        self.conclude(files, &robot, &summary, &line, &out)
     }
 
     /// Writes the files, prints the rows, with `line` on the link; the exit code.
-    fn conclude(
+    fn conclude<B: ControlBox>(
         &self,
         files: Files,
-        setup: &RobotSetup<impl Clone>,
+        robot: &Robot<B>,
         summary: &Summary,
         line: &str,
         out: &Path,
     ) -> Result<u8, Invalid> {
+        let setup = robot.setup();
         let scenario = &setup.scenario;
         let command = own_command();
         let choices = Choices {
-            measurement: MeasurementKind::Fri,
+            measurement: B::MEASUREMENT,
             options: setup.plant_options,
             ..Choices::default()
         };
@@ -402,8 +408,8 @@ impl ServeOptions {
     }
 
     fn setup(&self, kind: Kind) -> Result<RobotSetup<RobotOptions>, Invalid> {
-        let named = self.scenario.as_deref().unwrap_or(kind.scenario());
-        let mut scenario = Scenario::find(named)?;
+        let asked = self.experiment.as_deref().or(self.scenario.as_deref());
+        let mut scenario = Scenario::find(asked.unwrap_or(kind.scenario()))?;
         scenario.duration_s = self.duration.unwrap_or(scenario.duration_s);
         // That of the scenario may be too short for the protocol.
         let cycle = self.cycle_ms.unwrap_or(scenario.cycle_ms);

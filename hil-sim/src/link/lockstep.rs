@@ -6,6 +6,7 @@ use std::io;
 use super::channel::{Channel, Delivery};
 use super::fault::{Direction, Fault};
 use crate::robot::{ControlBox, Robot};
+use record::run::Sample;
 
 /// How much of an answer a measurement can expect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,15 +17,15 @@ pub enum Expect {
     Perhaps,
     /// One that came before or was overtaken: a client should not answer.
     Nothing,
-    /// The first of all: the client may not be there yet.
+    /// The client need not answer: it may not be there yet, or has begun nothing.
     First,
     /// One of the last: nobody waits for an answer.
     Farewell,
 }
 
 /// A client of a robot with the control box `B`, wherever it runs.
-pub trait Peer<B> {
-    /// Gives it a measurement; its answers go to `answers`, in their order. False
+pub trait Peer<B: ControlBox> {
+    /// Gives it a measurement of `robot`; its answers go to `answers`, in their order. False
     /// where one was expected and none came, be it damaged or to another measurement:
     /// after [`Expect::Answer`] the client counts as gone.
     ///
@@ -32,10 +33,27 @@ pub trait Peer<B> {
     /// Those of the transport.
     fn exchange(
         &mut self,
+        robot: &mut Robot<B>,
         measurement: &[u8],
         expect: Expect,
         answers: &mut Vec<Vec<u8>>,
     ) -> io::Result<bool>;
+
+    /// What goes beside the datagrams, both ways, where the robot has such a thing.
+    ///
+    /// # Errors
+    /// Those of the transport.
+    fn talk(&mut self, _: &mut Robot<B>) -> io::Result<()> {
+        Ok(())
+    }
+
+    /// Tells the robot what no datagram carries; only a client in this process can.
+    fn tell(&self, _: &mut Robot<B>) {}
+
+    /// Whether it has said that it ends the conversation: what it has begun nobody goes on with.
+    fn has_left(&self) -> bool {
+        false
+    }
 }
 
 /// The link between one robot and one client.
@@ -61,10 +79,26 @@ impl LockStep {
         }
     }
 
-    /// Whether the client stopped answering. From then on nothing is sent to it.
+    /// Whether the client stopped answering. From then on nothing is sent to it, until it no longer
+    /// drives the arm.
     #[must_use]
     pub fn is_gone(&self) -> bool {
         self.gone
+    }
+
+    /// One cycle: its datagrams, then [`Robot::advance`]. What the cycle was, if scenario time
+    /// runs.
+    ///
+    /// # Errors
+    /// Those of the client's transport.
+    pub fn step<B: ControlBox>(
+        &mut self,
+        robot: &mut Robot<B>,
+        client: &mut (impl Peer<B> + ?Sized),
+    ) -> io::Result<Option<Sample>> {
+        self.cycle(robot, client)?;
+        client.tell(robot);
+        Ok(robot.advance())
     }
 
     /// The datagrams of one cycle, up to the moment when [`Robot::advance`] is due.
@@ -78,16 +112,21 @@ impl LockStep {
         robot: &mut Robot<B>,
         client: &mut (impl Peer<B> + ?Sized),
     ) -> io::Result<()> {
+        client.talk(robot)?;
         let mut measurement = B::EMPTY;
         robot.measurement(&mut measurement);
+        // What it says may have a reply.
+        client.talk(robot)?;
         let mut answers = Vec::new();
         if !robot.has_begun() {
-            client.exchange(measurement.as_ref(), Expect::First, &mut answers)?;
+            client.exchange(robot, measurement.as_ref(), Expect::First, &mut answers)?;
             for answer in answers {
                 robot.command(&answer, 0.0);
             }
             return Ok(());
         }
+        let driven = robot.is_driven();
+        self.gone &= driven;
         let (start, t_s) = (robot.robot_time_s(), robot.time_s());
         let end = (robot.cycle() + 1) as f64 * self.cycle_s;
         self.to_client.send(start, t_s, measurement.as_ref());
@@ -95,8 +134,11 @@ impl LockStep {
             if self.gone {
                 continue;
             }
-            let expect = self.expect(&arrived);
-            let answered = client.exchange(&arrived.bytes, expect, &mut answers)?;
+            let expect = match self.expect(&arrived) {
+                Expect::Answer if !driven => Expect::First,
+                expect => expect,
+            };
+            let answered = client.exchange(robot, &arrived.bytes, expect, &mut answers)?;
             self.gone |= expect == Expect::Answer && !answered;
             for answer in answers.drain(..) {
                 self.to_robot.send(arrived.time_s, t_s, &answer);
@@ -104,24 +146,6 @@ impl LockStep {
         }
         while let Some(arrived) = self.to_robot.receive(end) {
             robot.command(&arrived.bytes, (arrived.time_s - start).max(0.0));
-        }
-        Ok(())
-    }
-
-    /// The end: the robot lets answers move it no more and says so, three times.
-    ///
-    /// # Errors
-    /// Those of the client's transport.
-    pub fn finish<B: ControlBox>(
-        &mut self,
-        robot: &mut Robot<B>,
-        client: &mut (impl Peer<B> + ?Sized),
-    ) -> io::Result<()> {
-        robot.leave();
-        let mut measurement = B::EMPTY;
-        for _ in 0..3 {
-            robot.measurement(&mut measurement);
-            client.exchange(measurement.as_ref(), Expect::Farewell, &mut Vec::new())?;
         }
         Ok(())
     }
@@ -137,4 +161,32 @@ impl LockStep {
             (true, false) => Expect::Answer,
         }
     }
+}
+
+/// Whether a run is over: the robot's is, or the client has left what it had begun.
+pub fn is_over<B: ControlBox>(robot: &Robot<B>, client: &(impl Peer<B> + ?Sized)) -> bool {
+    robot.is_over() || (robot.has_begun() && client.has_left())
+}
+
+/// The end of a run: what is due goes out, the robot lets answers move it no more and says so, three
+/// times. Who has left hears nothing.
+///
+/// # Errors
+/// Those of the client's transport.
+pub fn finish<B: ControlBox>(
+    robot: &mut Robot<B>,
+    client: &mut (impl Peer<B> + ?Sized),
+) -> io::Result<()> {
+    if client.has_left() {
+        return Ok(());
+    }
+    client.talk(robot)?;
+    robot.leave();
+    let mut measurement = B::EMPTY;
+    for _ in 0..3 {
+        robot.measurement(&mut measurement);
+        let mut none = Vec::new();
+        client.exchange(robot, measurement.as_ref(), Expect::Farewell, &mut none)?;
+    }
+    Ok(())
 }

@@ -7,4 +7,4 @@ mod lockstep;
 
 pub use channel::{Channel, Delivery};
 pub use fault::{BURST, DELAY_MS, Direction, Fault, FaultKind, SHARE, Window};
-pub use lockstep::{Expect, LockStep, Peer};
+pub use lockstep::{Expect, LockStep, Peer, finish, is_over};

@@ -31,6 +31,9 @@ pub fn run_report(run: &Run<'_>) -> String {
     if let Some(link) = &run.summary.link {
         section(&mut body, "Link", &tables::link(link));
     }
+    if let Some(fci) = &run.summary.fci {
+        section(&mut body, "Link", &tables::fci(fci));
+    }
     section(&mut body, "Settings", &settings::settings(run));
     body += &footer(run);
     page(&title, &body)

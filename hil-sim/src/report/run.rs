@@ -50,14 +50,18 @@ impl Choices {
     pub fn of(experiment: &Experiment) -> Self {
         Self {
             null_stiffness: experiment.null_stiffness,
-            measurement: experiment.measurement,
+            measurement: experiment.way(),
             options: experiment.options,
         }
     }
 
     /// Whether the null-space damping is c M and not the scenario's D.
     pub(super) fn has_inertia_damping(&self) -> bool {
-        self.measurement != MeasurementKind::Direct || self.options.dead_cycles > 0
+        let estimated = matches!(
+            self.measurement,
+            MeasurementKind::LikeFri | MeasurementKind::Fri
+        );
+        estimated || self.options.dead_cycles > 0
     }
 }
 

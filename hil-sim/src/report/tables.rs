@@ -6,7 +6,7 @@ use super::svg::escape;
 use super::ticks::{figure, plain};
 use super::{Run, letter};
 use crate::metrics::LevelFigures;
-use crate::robot::LinkFigures;
+use crate::robot::{Event, FciFigures, LinkFigures, OwnLateness};
 use cell::scenario::{LevelSpec, Metric, Unit};
 
 /// A table under construction: rows of cells that are HTML already.
@@ -312,7 +312,50 @@ pub fn link(link: &LinkFigures) -> String {
             number(Some(link.largest_torque_step_nm)),
         ),
     ];
-    let own = link.own_lateness.iter().flat_map(|own| {
+    let rows = rows.into_iter().chain(lateness(link.own_lateness.as_ref()));
+    numbers(
+        "Datagrams between robot and client, from the first answer on.",
+        rows,
+    ) + &events(&link.events)
+}
+
+/// The same of a robot with the FCI.
+pub fn fci(fci: &FciFigures) -> String {
+    let percent = |share: Option<f64>| number(share.map(|share| share * 100.0));
+    let rows = [
+        ("Version of the interface", count(u64::from(fci.version))),
+        ("Motions", count(fci.motions)),
+        ("Aborted by a reflex", count(fci.reflexes)),
+        (
+            "Share under the client's torque [%]",
+            percent(fci.command_share),
+        ),
+        ("Commands in time", count(fci.commands)),
+        ("Cycles without a command", count(fci.lost)),
+        ("Least success rate [%]", percent(fci.success_rate_min)),
+        ("Commands to an older state", count(fci.late)),
+        ("Commands to a state that had one", count(fci.repeated)),
+        ("Datagrams without a motion", count(fci.idle)),
+        ("Datagrams that cannot be used", count(fci.unreadable)),
+        (
+            "Largest step of a commanded torque [Nm]",
+            number(Some(fci.largest_torque_step_nm)),
+        ),
+    ];
+    let rows = rows.into_iter().chain(lateness(fci.own_lateness.as_ref()));
+    let errors = match fci.errors.is_empty() {
+        true => String::new(),
+        false => format!(
+            "<p>Motions were aborted by {}.</p>\n",
+            fci.errors.join(", ")
+        ),
+    };
+    numbers("Commands of the client, in all motions.", rows) + &errors + &events(&fci.events)
+}
+
+/// How the robot itself kept the wall clock, where that decided.
+fn lateness(own: Option<&OwnLateness>) -> impl Iterator<Item = (&'static str, String)> {
+    own.into_iter().flat_map(|own| {
         [
             ("Robot's own late measurements", count(own.cycles)),
             (
@@ -328,21 +371,21 @@ pub fn link(link: &LinkFigures) -> String {
                 number(Some(own.max_ms)),
             ),
         ]
-    });
-    let html = numbers(
-        "Datagrams between robot and client, from the first answer on.",
-        rows.into_iter().chain(own),
-    );
-    if link.events.is_empty() {
-        return html;
+    })
+}
+
+/// What happened, if anything did.
+fn events(events: &[Event]) -> String {
+    if events.is_empty() {
+        return String::new();
     }
     let mut table = Table::new(
         "Events, by the time of the scenario and of the robot.",
         ["Event", "#t [s]", "#Robot [s]"],
     );
-    for event in &link.events {
+    for event in events {
         let times = [event.t_s, Some(event.robot_t_s)];
         table.row(&escape(&event.text), times.map(number));
     }
-    html + &table.finish()
+    table.finish()
 }

@@ -17,6 +17,10 @@ use crate::sample::{LevelProbes, Stop};
 use cell::names::PlantKind;
 use cell::scenario::{PointSpec, Push, Scenario};
 
+/// How long a client may go on behind the end of the scenario, where it ends by itself what it has
+/// begun \[cycles\]: many times what it takes to come to rest.
+const OVERTIME: u64 = 10_000;
+
 /// Which arm, which experiment, and how the robot behaves: options `O` of its control box.
 #[derive(Clone, Debug)]
 pub struct RobotSetup<O> {
@@ -188,9 +192,10 @@ impl<B: ControlBox> Robot<B> {
 
     /// The datagrams that were not used, as the end of a sentence.
     pub(crate) fn refused(&self) -> Option<String> {
-        let count = self.counters.link.rejected.total();
-        let why = self.control_box.refusal();
-        (count > 0).then(|| format!("; {count} datagrams from there were refused, the last: {why}"))
+        let (count, why) = self.control_box.refused()?;
+        Some(format!(
+            "; {count} datagrams from there were refused, the last: {why}"
+        ))
     }
 
     /// The robot's controller.
@@ -219,7 +224,7 @@ impl<B: ControlBox> Robot<B> {
     /// What happened so far.
     #[must_use]
     pub fn events(&self) -> &[Event] {
-        &self.counters.link.events
+        self.counters.events()
     }
 
     /// What this robot is.
@@ -239,10 +244,35 @@ impl<B: ControlBox> Robot<B> {
         }
     }
 
-    /// Lets answers move the arm no more; measurements say so from now on.
+    /// Whether there is nothing more to do: [`Robot::is_finished`], and a client that ends by
+    /// itself what it has begun has done so, or had the time for it.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        let stopped = self.ending.has_begun();
+        let waits = B::CLIENT_ENDS && !stopped && self.is_driven() && self.overtime() < OVERTIME;
+        self.is_finished() && !waits
+    }
+
+    /// Cycles behind the end of the scenario.
+    fn overtime(&self) -> u64 {
+        let end = self.setup.scenario.cycles() as u64;
+        let start = self.start.as_ref().map_or(0, |start| start.cycle);
+        self.cycle.saturating_sub(start + end)
+    }
+
+    /// Whether a client that is there answers every measurement.
+    #[must_use]
+    pub fn is_driven(&self) -> bool {
+        self.control_box.is_driven()
+    }
+
+    /// Lets answers move the arm no more; measurements say so from now on. Where the client ends by
+    /// itself what it has begun, it has done so or is late: nothing is left to say.
     pub fn leave(&mut self) {
-        self.ended_alone |= !self.control_box.commands();
-        self.control_box.leave();
+        if !B::CLIENT_ENDS {
+            self.ended_alone |= !self.control_box.commands();
+            self.control_box.leave();
+        }
     }
 
     /// Ends the run early.

@@ -8,9 +8,12 @@ use controller_core::joint::{JointMatrix, JointState, JointVector};
 
 use super::counters::Counters;
 use super::driving::Driving;
-use super::figures::LinkFigures;
+use super::fci::figures::FciFigures;
+use super::figures::Counted;
+use super::lwr::figures::LinkFigures;
 use super::model::RobotModel;
 use crate::sample::UnsafeMotion;
+use cell::names::MeasurementKind;
 
 /// What became of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +96,15 @@ pub struct Told {
     pub mode: Option<Mode>,
 }
 
+/// What a robot's link did in a run, in its own terms.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Figures {
+    /// Of the LWR.
+    Fri(LinkFigures),
+    /// Of Panda and FR3.
+    Fci(FciFigures),
+}
+
 /// A robot's controller as the arm and its loops need it. No clock, no plant, no sockets.
 pub trait ControlBox: Sized {
     /// How it behaves.
@@ -102,6 +114,13 @@ pub trait ControlBox: Sized {
 
     /// No bytes yet.
     const EMPTY: Self::Measurement;
+
+    /// What limits of a scenario call runs over its link.
+    const MEASUREMENT: MeasurementKind;
+
+    /// Whether the client ends by itself what it has begun, and the robot goes on until then; else
+    /// the robot says that it is over.
+    const CLIENT_ENDS: bool;
 
     /// At rest in `q0` \[rad\]; torques act `dead_cycles` cycles after they have arrived.
     fn new(
@@ -145,6 +164,9 @@ pub trait ControlBox: Sized {
     /// Whether an answer was ever accepted.
     fn has_begun(&self) -> bool;
 
+    /// Whether a client that is there answers every measurement.
+    fn is_driven(&self) -> bool;
+
     /// Whether the present cycle has its answer.
     fn is_answered(&self) -> bool;
 
@@ -169,14 +191,17 @@ pub trait ControlBox: Sized {
     /// What there is to say since the last call.
     fn take_messages(&mut self) -> Vec<String>;
 
-    /// Why the last datagram was refused.
-    fn refusal(&self) -> String;
+    /// How many datagrams were refused, if any were, and why the last one.
+    fn refused(&self) -> Option<(u64, String)>;
 
     /// The link, in words.
     fn link(&self) -> String;
 
-    /// Completes the figures that the arm's side has counted.
-    fn figures(&self, counted: LinkFigures) -> LinkFigures;
+    /// Why a run that nothing stopped is a failure all the same, if it is.
+    fn failure(&self) -> Option<String>;
+
+    /// The figures of the link, with those that the arm's side has counted.
+    fn figures(&self, counted: Counted) -> Figures;
 }
 
 /// Whole cycles in a time, at least one.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use cell::timing::Times;
 
-use super::figures::{EVENTS_MAX, Event, LatencyFigures, LinkFigures, OwnLateness, Stamp};
+use super::figures::{Counted, EVENTS_MAX, Event, LatencyFigures, OwnLateness, Stamp};
 
 /// From here on a measurement counts as late \[cycles\]: what it takes to compute one and a
 /// usual wake-up are less.
@@ -36,7 +36,7 @@ impl Departures {
 #[derive(Clone, Debug, Default)]
 pub struct Counters {
     /// What is reported as it is counted; the rest of it follows in the end.
-    pub link: LinkFigures,
+    counted: Counted,
     /// Cycles of the scenario, and those of them in command state.
     scenario: u64,
     commanded: u64,
@@ -50,8 +50,8 @@ pub struct Counters {
 impl Counters {
     /// An answer that took `latency_s` \[s\].
     pub fn answer(&mut self, latency_s: f64, in_time: bool) {
-        self.link.answers += 1;
-        self.link.late += u64::from(!in_time);
+        self.counted.answers += 1;
+        self.counted.late += u64::from(!in_time);
         self.latency_sum += latency_s;
         self.latency_squares += latency_s * latency_s;
         self.latency_max = self.latency_max.max(latency_s);
@@ -79,28 +79,39 @@ impl Counters {
     /// A cycle; `commanded`: answers moved the arm when it began. `scenario`: its time ran.
     pub fn cycle(&mut self, commanded: bool, scenario: bool) {
         let commanded = u64::from(commanded);
-        self.link.state_cycles.command += commanded;
-        self.link.state_cycles.monitor += 1 - commanded;
+        self.counted.state_cycles.command += commanded;
+        self.counted.state_cycles.monitor += 1 - commanded;
         self.scenario += u64::from(scenario);
         self.commanded += u64::from(scenario) * commanded;
     }
 
+    /// A torque that changed by `step_nm` \[Nm\] without the client.
+    pub fn torque_step(&mut self, step_nm: f64) {
+        let largest = &mut self.counted.largest_torque_step_nm;
+        *largest = largest.max(step_nm);
+    }
+
+    /// What happened so far.
+    pub fn events(&self) -> &[Event] {
+        &self.counted.events
+    }
+
     /// Keeps an event while there is room.
     pub fn event(&mut self, event: Event) {
-        if self.link.events.len() < EVENTS_MAX {
-            self.link.events.push(event);
+        if self.counted.events.len() < EVENTS_MAX {
+            self.counted.events.push(event);
         }
     }
 
     /// All figures that are counted here.
-    pub fn figures(&self) -> LinkFigures {
+    pub fn figures(&self) -> Counted {
         let share = |sum: f64, of: u64| (of > 0).then(|| sum / of as f64);
-        let mean = |sum: f64| share(sum, self.link.answers);
+        let mean = |sum: f64| share(sum, self.counted.answers);
         let latency = mean(self.latency_sum);
         let variance = latency
             .zip(mean(self.latency_squares))
             .map(|(mean, square)| (square - mean * mean).max(0.0));
-        LinkFigures {
+        Counted {
             command_share: share(self.commanded as f64, self.scenario),
             latency_ms: LatencyFigures {
                 mean: latency.map(|t| t * 1e3),
@@ -108,7 +119,7 @@ impl Counters {
             },
             jitter_ms: variance.map(|variance| variance.sqrt() * 1e3),
             own_lateness: self.departures.as_ref().map(Departures::figures),
-            ..self.link.clone()
+            ..self.counted.clone()
         }
     }
 }

@@ -109,8 +109,7 @@ impl<B: ControlBox> Robot<B> {
         let by_itself = unsafe_motion.is_some() || self.ending.has_begun();
         if let (Some(last), true) = (self.applied, turn.bridging && !by_itself) {
             let by_link = applied - last - turn.ordered_change;
-            let largest = &mut self.counters.link.largest_torque_step_nm;
-            *largest = largest.max(by_link.amax());
+            self.counters.torque_step(by_link.amax());
         }
         self.applied = Some(applied);
         let acting = Acting {

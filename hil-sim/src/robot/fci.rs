@@ -10,23 +10,27 @@ pub mod urdf;
 
 use controller_core::arm::ArmParameters;
 use controller_core::joint::JointVector;
+use fci::Version;
 use fci::robot::{Drive, EndEffector, Ended, Operator, Settings};
 use fci::state::LEN_MAX;
 use fci::status::MoveStatus;
-use fci::{Error, Version};
 
 pub use fci::robot::{Broken, Handled, Received};
 pub use figures::FciFigures;
 
 use super::arm::Robot;
-use super::control_box::{Answer, ControlBox, Now, Surroundings, Told, Turn};
+use super::control_box::{Answer, ControlBox, Figures, Now, Surroundings, Told, Turn};
 use super::counters::Counters;
 use super::driving::{Driving, Pipe};
-use super::figures::{Event, LinkFigures};
+use super::figures::{Counted, Event};
 use super::lwr::POSITION_STIFFNESS;
 use crate::plant::Impedance;
-use crate::summary::{Summary, Verdict};
+use cell::invalid::Invalid;
+use cell::names::MeasurementKind;
 use cell::scenario::{EquippedArm, Scenario};
+
+/// Cycle of the interface \[ms\].
+const CYCLE_MS: f64 = 1.0;
 
 /// Cycles that the success rate is about.
 const WINDOW: u64 = 100;
@@ -48,21 +52,32 @@ pub struct FciOptions {
 }
 
 impl FciOptions {
-    /// Of the arm and the tool of a scenario.
-    ///
-    /// # Errors
-    /// A version that there is not.
-    pub fn of(scenario: &Scenario, version: u16) -> Result<Self, Error> {
+    /// Of the arm and the tool of a scenario, by a version of the interface.
+    #[must_use]
+    pub fn of(scenario: &Scenario, version: Version) -> Self {
         let equipped = scenario.arm();
         let bare = scenario.robot.table().map(EquippedArm::of);
         let bare = bare.unwrap_or_else(|_| equipped.clone());
         let tool = equipped.tool();
-        Ok(Self {
-            version: Version::from_number(version)?,
+        Self {
+            version,
             end_effector: tool.map_or(EndEffector::NONE, arm::end_effector),
             model: urdf::text(&bare.parameters),
             drives_off_s: None,
-        })
+        }
+    }
+
+    /// Refuses a scenario with another cycle than that of the interface.
+    ///
+    /// # Errors
+    /// Its cycle.
+    pub fn check_cycle(scenario: &Scenario) -> Result<(), Invalid> {
+        if scenario.cycle_ms == CYCLE_MS {
+            return Ok(());
+        }
+        let given = format!("{} ms", scenario.cycle_ms);
+        let allowed = "1 ms, the only one that the FCI has: --cycle-ms 1";
+        Err(Invalid::new("cycle", given, allowed))
     }
 }
 
@@ -139,6 +154,8 @@ impl ControlBox for FciBox {
         bytes: [0; LEN_MAX],
         len: 0,
     };
+    const MEASUREMENT: MeasurementKind = MeasurementKind::Link;
+    const CLIENT_ENDS: bool = true;
 
     fn new(
         options: &FciOptions,
@@ -250,6 +267,10 @@ impl ControlBox for FciBox {
         self.begun
     }
 
+    fn is_driven(&self) -> bool {
+        self.control.is_driven()
+    }
+
     fn is_answered(&self) -> bool {
         !self.control.waits()
     }
@@ -323,16 +344,42 @@ impl ControlBox for FciBox {
         std::mem::take(&mut self.messages)
     }
 
-    fn refusal(&self) -> String {
-        "no command to the last state".to_string()
+    fn refused(&self) -> Option<(u64, String)> {
+        let counters = self.control.counters();
+        let count = counters.late + counters.repeated + counters.idle + counters.unreadable;
+        (count > 0).then(|| (count, "no command to the last state".to_string()))
     }
 
     fn link(&self) -> String {
         format!("robot mode {}", self.control.mode())
     }
 
-    fn figures(&self, counted: LinkFigures) -> LinkFigures {
-        counted
+    fn failure(&self) -> Option<String> {
+        let ended = self.ended.as_ref()?;
+        let failed = ended.status != MoveStatus::Success;
+        failed.then(|| format!("the last motion {}", described(ended)))
+    }
+
+    fn figures(&self, counted: Counted) -> Figures {
+        let counters = self.control.counters();
+        Figures::Fci(FciFigures {
+            version: self.version.number(),
+            motions: counters.motions,
+            reflexes: counters.reflexes,
+            errors: self.errors.clone(),
+            command_share: counted.command_share,
+            commands: counters.commands,
+            lost: counters.lost,
+            success_rate_min: self.success_rate_min,
+            late: counters.late,
+            repeated: counters.repeated,
+            idle: counters.idle,
+            unreadable: counters.unreadable,
+            largest_torque_step_nm: counters.largest_torque_step_nm,
+            own_lateness: counted.own_lateness,
+            realtime: None,
+            events: counted.events,
+        })
     }
 }
 
@@ -342,18 +389,18 @@ impl Robot<FciBox> {
         &mut self.control_box.control
     }
 
-    /// Whether a motion runs whose first command has come.
-    #[must_use]
-    pub fn is_driven(&self) -> bool {
-        self.control_box.control.is_driven()
-    }
-
-    /// A request has been handled: what is worth knowing of it.
-    pub fn note(&mut self, handled: &Handled) {
-        if let Some(refused) = handled.refused {
-            self.say(format!("{} refused: {refused}", handled.kind));
+    /// Takes the requests of the stream as far as they are whole and replies do not wait.
+    ///
+    /// # Errors
+    /// Nothing that can be understood: the connection is to be closed.
+    pub fn hear_requests(&mut self, bytes: &mut &[u8]) -> Result<(), Broken> {
+        while let Some(handled) = self.control_box.control.receive(bytes)? {
+            if let Some(refused) = handled.refused {
+                self.say(format!("{} refused: {refused}", handled.kind));
+            }
+            self.control_box.listen();
         }
-        self.control_box.listen();
+        Ok(())
     }
 
     /// The connection is closed; why, if that is worth knowing.
@@ -374,44 +421,5 @@ impl Robot<FciBox> {
                 text,
             });
         }
-    }
-
-    /// Figures, verdict and interface of the run so far.
-    #[must_use]
-    pub fn judged(&self) -> Summary {
-        let mut summary = self.summary();
-        let link = summary.link.take().unwrap_or_default();
-        let own = &self.control_box;
-        let failed = (own.ended.as_ref()).filter(|ended| ended.status != MoveStatus::Success);
-        if let Some(ended) = failed
-            && !self.ending.has_begun()
-        {
-            let reason = format!("the last motion {}", described(ended));
-            summary.verdict = Verdict::Fail;
-            summary.reason = Some(match summary.reason {
-                Some(other) => format!("{other}; {reason}"),
-                None => reason,
-            });
-        }
-        let counters = own.control.counters();
-        summary.fci = Some(FciFigures {
-            version: own.version.number(),
-            motions: counters.motions,
-            reflexes: counters.reflexes,
-            errors: own.errors.clone(),
-            command_share: link.command_share,
-            commands: counters.commands,
-            lost: counters.lost,
-            success_rate_min: own.success_rate_min,
-            late: counters.late,
-            repeated: counters.repeated,
-            idle: counters.idle,
-            unreadable: counters.unreadable,
-            largest_torque_step_nm: counters.largest_torque_step_nm,
-            own_lateness: link.own_lateness,
-            realtime: None,
-            events: link.events,
-        });
-        summary
     }
 }

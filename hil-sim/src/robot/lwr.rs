@@ -1,5 +1,6 @@
 //! The control box of the LWR, by KUKA's Fast Research Interface.
 
+pub mod figures;
 mod inbox;
 mod krc;
 mod options;
@@ -11,12 +12,14 @@ use controller_core::arm::ArmParameters;
 use controller_core::joint::JointVector;
 use fri::{InterfaceState, Measurement, Quality};
 
-use super::control_box::{Answer, ControlBox, Now, Surroundings, Told, Turn};
+use super::control_box::{Answer, ControlBox, Figures, Now, Surroundings, Told, Turn};
 use super::counters::Counters;
 use super::driving::Pipe;
-use super::figures::{LinkFigures, QualityCycles};
+use super::figures::Counted;
+use cell::names::MeasurementKind;
 use inbox::Inbox;
 
+pub use figures::{LinkFigures, QualityCycles, Rejected};
 pub use krc::Krc;
 pub use options::{Krl, POSITION_STIFFNESS, RatingOptions, RobotAdds, RobotOptions, scheme_named};
 pub use order::Order;
@@ -30,7 +33,8 @@ pub struct LwrBox {
     /// The way of added torque to the motors.
     pipe: Pipe,
     adds: RobotAdds,
-    qualities: QualityCycles,
+    /// What is reported as it is counted.
+    link: LinkFigures,
     /// Why the last datagram that is no answer is none.
     unread: Option<fri::Error>,
 }
@@ -54,6 +58,8 @@ impl ControlBox for LwrBox {
     type Measurement = [u8; Measurement::LEN];
 
     const EMPTY: [u8; Measurement::LEN] = [0; Measurement::LEN];
+    const MEASUREMENT: MeasurementKind = MeasurementKind::Fri;
+    const CLIENT_ENDS: bool = false;
 
     fn new(
         options: &RobotOptions,
@@ -68,7 +74,7 @@ impl ControlBox for LwrBox {
             inbox: Inbox::new(),
             pipe: Pipe::new(dead_cycles),
             adds: options.adds,
-            qualities: QualityCycles::default(),
+            link: LinkFigures::default(),
             unread: None,
         }
     }
@@ -110,12 +116,12 @@ impl ControlBox for LwrBox {
         let order = match order::read(datagram) {
             Ok(order) => order,
             Err(error) => {
-                inbox::count_error(&mut counters.link.rejected, &error);
+                inbox::count_error(&mut self.link.rejected, &error);
                 self.unread = Some(error);
                 return Answer::Rejected;
             }
         };
-        let place = match self.inbox.place(&order, &mut counters.link) {
+        let place = match self.inbox.place(&order, &mut self.link) {
             Ok(place) => place,
             Err(answer) => {
                 self.unread = None;
@@ -123,7 +129,7 @@ impl ControlBox for LwrBox {
             }
         };
         if let Err(refusal) = self.krc.accept(&order, q) {
-            inbox::count_refusal(&mut counters.link.rejected, refusal);
+            inbox::count_refusal(&mut self.link.rejected, refusal);
             return Answer::Rejected;
         }
         let behind = cycle - place;
@@ -139,6 +145,10 @@ impl ControlBox for LwrBox {
 
     fn has_begun(&self) -> bool {
         self.inbox.has_begun()
+    }
+
+    fn is_driven(&self) -> bool {
+        self.has_begun()
     }
 
     fn is_answered(&self) -> bool {
@@ -159,7 +169,7 @@ impl ControlBox for LwrBox {
             // The client may begin anew, with any counter.
             self.inbox.forget_counter();
         }
-        let levels = &mut self.qualities;
+        let levels = &mut self.link.quality_cycles;
         *match self.rating.quality() {
             Quality::Bad => &mut levels.bad,
             Quality::Ok => &mut levels.ok,
@@ -197,24 +207,38 @@ impl ControlBox for LwrBox {
         self.krc.take_messages()
     }
 
-    fn refusal(&self) -> String {
-        match &self.unread {
+    fn refused(&self) -> Option<(u64, String)> {
+        let count = self.link.rejected.total();
+        let why = match &self.unread {
             Some(error) => error.to_string(),
             None => "reflects no measurement that was sent".to_string(),
-        }
+        };
+        (count > 0).then_some((count, why))
     }
 
     fn link(&self) -> String {
         format!("link quality {:?}", self.quality()).to_lowercase()
     }
 
-    fn figures(&self, counted: LinkFigures) -> LinkFigures {
-        LinkFigures {
-            quality_cycles: self.qualities,
+    fn failure(&self) -> Option<String> {
+        None
+    }
+
+    fn figures(&self, counted: Counted) -> Figures {
+        Figures::Fri(LinkFigures {
+            state_cycles: counted.state_cycles,
+            command_share: counted.command_share,
+            answers: counted.answers,
             missed: self.rating.missed(),
+            late: counted.late,
+            latency_ms: counted.latency_ms,
+            jitter_ms: counted.jitter_ms,
             fallbacks: self.krc.fallbacks(),
             recoveries: self.krc.entries().saturating_sub(1),
-            ..counted
-        }
+            largest_torque_step_nm: counted.largest_torque_step_nm,
+            own_lateness: counted.own_lateness,
+            events: counted.events,
+            ..self.link.clone()
+        })
     }
 }

@@ -39,17 +39,15 @@ pub use self::fci::{
 };
 pub use arm::{Robot, RobotSetup};
 pub(crate) use control_box::cycles;
-pub use control_box::{Answer, ControlBox, Now, Seen, Surroundings, Told, Turn};
+pub use control_box::{Answer, ControlBox, Figures, Now, Seen, Surroundings, Told, Turn};
 pub use counters::Counters;
 pub use driving::Driving;
-pub use figures::{
-    Event, LatencyFigures, LinkFigures, OwnLateness, QualityCycles, Rejected, Stamp, StateCycles,
-};
+pub use figures::{Counted, Event, LatencyFigures, OwnLateness, Stamp, StateCycles};
 pub use fri::InterfaceState as State;
 pub use fri::measurement::LEN as MEASUREMENT_BYTES;
 pub use lwr::{
-    Krc, Krl, LwrBox, Order, POSITION_STIFFNESS, Rating, RatingOptions, RobotAdds, RobotOptions,
-    Statistics, scheme_named,
+    Krc, Krl, LinkFigures, LwrBox, Order, POSITION_STIFFNESS, QualityCycles, Rating, RatingOptions,
+    Rejected, RobotAdds, RobotOptions, Statistics, scheme_named,
 };
 pub use model::RobotModel;
 

@@ -1,39 +1,31 @@
 //! Serving Franka's FCI: a stream for requests, datagrams for states and commands, to one client
 //! after the other.
 //!
-//! Before the first command of a motion states go out every millisecond by the wall clock, in
-//! virtual time as well: a client rightly reads on without an answer. From then on virtual time waits for
-//! every command, and by the wall clock the schedule is absolute: a command counts when it is here
-//! before the next state leaves, so that the robot's own lateness is not the client's.
+//! Before the first command of a motion states go out by the wall clock, in virtual time as well: a
+//! client rightly reads on without an answer. From then on virtual time waits for every command, in the
+//! same loop as for every robot ([`LockStep`]), and by the wall clock the schedule is absolute: a
+//! command counts when it is here before the next state leaves, so that the robot's own lateness is
+//! not the client's.
 
 mod sockets;
 
 use std::io;
 use std::net::SocketAddr;
 use std::thread::sleep;
-use std::time::{Duration, Instant as Clock};
+use std::time::Instant as Clock;
 
 use super::console::Operator;
 use super::service::End;
-use super::transport::{PATIENCE, POLL};
-use crate::link::{Channel, Direction, Fault};
-use crate::robot::{FciRobot, Stamp};
+use super::transport::POLL;
+use crate::link::{Channel, Direction, Fault, LockStep, finish, is_over};
+use crate::robot::{ControlBox as _, FciBox, FciRobot, Stamp};
 use cell::invalid::Invalid;
 use record::run::Sample;
 
-use sockets::Sockets;
+use sockets::{CYCLE, Sockets};
 
-/// Cycle of the interface.
-pub const CYCLE: Duration = Duration::from_millis(1);
-
-/// The same \[s\].
+/// Cycle of the interface \[s\].
 const CYCLE_S: f64 = 1e-3;
-
-/// How long a motion may go on behind the end of the scenario \[cycles\].
-const OVERTIME: u32 = 10_000;
-
-/// How long a damaged state is waited for to be answered.
-const PERHAPS: Duration = Duration::from_millis(5);
 
 /// How a robot with the FCI is served.
 #[derive(Clone, Debug)]
@@ -48,17 +40,18 @@ pub struct FciService {
     pub wait_s: f64,
 }
 
-/// A robot with its sockets, while it is served.
-struct Served<'a> {
-    service: &'a FciService,
-    robot: &'a mut FciRobot,
-    sockets: Sockets,
+/// Both directions of the link by the wall clock.
+struct Paced {
     to_client: Channel,
     to_robot: Channel,
-    /// Number of the newest state that has arrived.
-    newest: Option<u64>,
-    /// A client that does not answer any more is not waited for.
-    gone: bool,
+    /// When the next state is due.
+    due: Clock,
+}
+
+/// Whose time decides.
+enum Pace {
+    Virtual(LockStep),
+    Wall(Paced),
 }
 
 impl FciService {
@@ -83,41 +76,47 @@ impl FciService {
         mut sink: impl FnMut(&Sample) -> io::Result<()>,
     ) -> io::Result<End> {
         let seed = robot.setup().seed;
-        let channel = |direction| Channel::new(direction, &self.faults, CYCLE_S, seed);
-        let mut served = Served {
-            service: self,
-            robot,
-            sockets: sockets.0,
-            to_client: channel(Direction::ToClient),
-            to_robot: channel(Direction::ToRobot),
-            newest: None,
-            gone: false,
-        };
+        let mut sockets = sockets.0;
         let begun = Clock::now();
-        if !self.lockstep {
-            served.robot.keep_time(Stamp::Program);
-        }
-        let mut due = Clock::now();
-        let mut overtime = 0;
-        loop {
-            operator.attend(served.robot);
-            let over = served.robot.is_finished();
-            if over && (!served.robot.is_driven() || overtime >= OVERTIME) {
-                served.sockets.farewell(served.robot)?;
-                return Ok(End::Finished);
+        let mut pace = if self.lockstep {
+            Pace::Virtual(LockStep::new(&self.faults, CYCLE_S, seed))
+        } else {
+            robot.keep_time(Stamp::Program);
+            let channel = |direction| Channel::new(direction, &self.faults, CYCLE_S, seed);
+            Pace::Wall(Paced {
+                to_client: channel(Direction::ToClient),
+                to_robot: channel(Direction::ToRobot),
+                due: begun,
+            })
+        };
+        while !is_over(robot, &sockets) {
+            operator.attend(robot);
+            if !robot.has_begun() && begun.elapsed().as_secs_f64() > self.wait_s {
+                return Ok(End::NoClient(self.nobody(&sockets)));
             }
-            overtime += u32::from(over);
-            if !served.robot.has_begun() && begun.elapsed().as_secs_f64() > self.wait_s {
-                return Ok(End::NoClient(served.nobody()));
-            }
-            if served.robot.has_begun() && !served.sockets.is_open() {
-                // What the client has begun nobody can go on with.
-                return Ok(End::Finished);
-            }
-            due = served.cycle(due)?;
-            if let Some(sample) = served.robot.advance() {
+            let sample = match &mut pace {
+                Pace::Virtual(link) => link.step(robot, &mut sockets)?,
+                Pace::Wall(paced) => {
+                    paced.cycle(robot, &mut sockets)?;
+                    robot.advance()
+                }
+            };
+            if let Some(sample) = sample {
                 sink(&sample)?;
             }
+        }
+        finish(robot, &mut sockets)?;
+        Ok(End::Finished)
+    }
+
+    /// Why nobody was served.
+    fn nobody(&self, sockets: &Sockets) -> String {
+        let Self {
+            address, wait_s, ..
+        } = self;
+        match sockets.last() {
+            None => format!("nobody connected to {address} within {wait_s} s"),
+            Some(client) => format!("no command of a motion from {client} within {wait_s} s"),
         }
     }
 }
@@ -135,129 +134,59 @@ impl FciSockets {
     }
 }
 
-impl Served<'_> {
-    /// Why nobody was served.
-    fn nobody(&self) -> String {
-        let address = self.service.address;
-        let wait_s = self.service.wait_s;
-        match self.sockets.last() {
-            None => format!("nobody connected to {address} within {wait_s} s"),
-            Some(client) => format!("no command of a motion from {client} within {wait_s} s"),
-        }
-    }
-
-    /// A cycle that is due at a time: state, requests, commands. When the next one is due.
-    fn cycle(&mut self, due: Clock) -> io::Result<Clock> {
-        self.sockets.talk(self.robot)?;
+impl Paced {
+    /// A cycle, once it is due: the state, then what comes until the next one is.
+    fn cycle(&mut self, robot: &mut FciRobot, sockets: &mut Sockets) -> io::Result<()> {
+        sockets.talk(robot)?;
         let now = Clock::now();
         // Who slept for more than a cycle begins the schedule anew.
-        let due = if now > due + CYCLE { now } else { due };
-        if self.service.lockstep && self.robot.is_driven() {
-            self.step()?;
-            return Ok(Clock::now());
-        }
+        let due = if now > self.due + CYCLE {
+            now
+        } else {
+            self.due
+        };
+        self.due = due + CYCLE;
         while Clock::now() < due {
             sleep(POLL.min(due.saturating_duration_since(Clock::now())));
         }
-        self.paced(due)?;
-        Ok(due + CYCLE)
-    }
-
-    /// Time of the link \[s\] that the present cycle begins at.
-    fn start_s(&self) -> f64 {
-        self.robot.cycle() as f64 * CYCLE_S
-    }
-
-    /// By the wall clock: the state, then what comes until the next one is due.
-    fn paced(&mut self, due: Clock) -> io::Result<()> {
         // Nobody is there: the arm rests.
-        if self.robot.control().client().is_none() {
+        if robot.control().client().is_none() {
             return Ok(());
         }
-        let (start, t_s) = (self.start_s(), self.robot.time_s());
-        let sound = !self.robot.has_begun();
-        let state = self.sockets.emit(self.robot)?;
+        let (start, t_s) = (robot.robot_time_s(), robot.time_s());
+        let sound = !robot.has_begun();
+        let mut state = FciBox::EMPTY;
+        robot.measurement(&mut state);
+        // A reflex has a reply.
+        sockets.talk(robot)?;
         if sound {
-            self.sockets.send(self.robot, &state)?;
+            sockets.send(robot, state.as_ref())?;
         } else {
-            self.to_client.send(start, t_s, &state);
+            self.to_client.send(start, t_s, state.as_ref());
             let late_s = due.elapsed().as_secs_f64();
-            self.robot.departed(start, late_s);
+            robot.departed(start, late_s);
         }
         loop {
             let elapsed_s = due.elapsed().as_secs_f64().min(CYCLE_S);
             let now_s = start + elapsed_s;
             while let Some(arrived) = self.to_client.receive(now_s + 1e-9) {
-                self.sockets.send(self.robot, &arrived.bytes)?;
+                sockets.send(robot, &arrived.bytes)?;
             }
-            self.sockets.talk(self.robot)?;
-            while let Some(command) = self.sockets.receive()? {
+            sockets.talk(robot)?;
+            while let Some(command) = sockets.receive()? {
                 if sound {
-                    self.robot.command(&command, 0.0);
+                    robot.command(&command, 0.0);
                 } else {
                     self.to_robot.send(now_s, t_s, &command);
                 }
             }
             while let Some(arrived) = self.to_robot.receive(now_s + 1e-9) {
-                self.robot
-                    .command(&arrived.bytes, (arrived.time_s - start).max(0.0));
+                robot.command(&arrived.bytes, (arrived.time_s - start).max(0.0));
             }
             if elapsed_s >= CYCLE_S {
                 return Ok(());
             }
             sleep(POLL);
         }
-    }
-
-    /// In virtual time: the state, and the command to it.
-    fn step(&mut self) -> io::Result<()> {
-        let (start, t_s) = (self.start_s(), self.robot.time_s());
-        let end = start + CYCLE_S;
-        let state = self.sockets.emit(self.robot)?;
-        self.to_client.send(start, t_s, &state);
-        while let Some(arrived) = self.to_client.receive(end) {
-            self.sockets.send(self.robot, &arrived.bytes)?;
-            let fresh = self.newest.is_none_or(|newest| arrived.number > newest);
-            if !fresh || self.gone {
-                continue;
-            }
-            self.newest = Some(arrived.number);
-            let patience = if arrived.damaged { PERHAPS } else { PATIENCE };
-            self.gone |=
-                !self.answer(&arrived.bytes, patience, arrived.time_s, t_s)? && !arrived.damaged;
-        }
-        while let Some(arrived) = self.to_robot.receive(end) {
-            self.robot
-                .command(&arrived.bytes, (arrived.time_s - start).max(0.0));
-        }
-        Ok(())
-    }
-
-    /// Waits for the command to a state, whatever else comes; whether it came, or was no more to
-    /// come as the motion has ended.
-    fn answer(
-        &mut self,
-        state: &[u8],
-        patience: Duration,
-        time_s: f64,
-        t_s: Option<f64>,
-    ) -> io::Result<bool> {
-        let deadline = Clock::now() + patience;
-        let message_id = state.get(..8);
-        while Clock::now() < deadline {
-            self.sockets.talk(self.robot)?;
-            if !self.robot.is_driven() {
-                return Ok(true);
-            }
-            if let Some(command) = self.sockets.receive()? {
-                self.to_robot.send(time_s, t_s, &command);
-                if command.get(..8) == message_id {
-                    return Ok(true);
-                }
-                continue;
-            }
-            self.sockets.wait()?;
-        }
-        Ok(false)
     }
 }

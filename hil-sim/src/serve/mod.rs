@@ -20,7 +20,7 @@ pub use service::{Client, End, Service};
 pub use transport::{Arrival, Transport};
 pub use udp::Udp;
 
-use crate::link::LockStep;
+use crate::link::{LockStep, finish, is_over};
 use crate::robot::{ControlBox, Robot};
 use record::run::Sample;
 
@@ -54,17 +54,16 @@ impl Service {
         let cycle_s = robot.setup().scenario.cycle_s();
         let mut link = LockStep::new(&self.faults, cycle_s, robot.setup().seed);
         let begun = Clock::now();
-        while !robot.is_finished() {
+        while !is_over(robot, client) {
             operator.attend(robot);
             if let Some(end) = self.hopeless(robot, begun) {
                 return Ok(end);
             }
-            link.cycle(robot, client)?;
-            if let Some(instant) = robot.advance() {
+            if let Some(instant) = link.step(robot, client)? {
                 sink(&instant)?;
             }
         }
-        link.finish(robot, client)?;
+        finish(robot, client)?;
         Ok(End::Finished)
     }
 }

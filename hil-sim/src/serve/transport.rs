@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::time::{Duration, Instant};
 
 use crate::link::{Expect, Peer};
-use crate::robot::{ControlBox, Stamp};
+use crate::robot::{ControlBox, Robot, Stamp};
 
 /// How long a client may take to answer in lock-step before it counts as gone.
 pub const PATIENCE: Duration = Duration::from_secs(2);
@@ -74,6 +74,7 @@ pub(super) fn silence(error: &io::Error) -> bool {
 impl<B: ControlBox, T: Transport + ?Sized> Peer<B> for T {
     fn exchange(
         &mut self,
+        _: &mut Robot<B>,
         measurement: &[u8],
         expect: Expect,
         answers: &mut Vec<Vec<u8>>,
@@ -106,7 +107,10 @@ impl<B: ControlBox, T: Transport + ?Sized> Peer<B> for T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::LwrBox;
+    use crate::plant::PlantOptions;
+    use crate::robot::{LwrBox, LwrRobot, RobotOptions, RobotSetup};
+    use cell::names::PlantKind;
+    use cell::scenario::Scenario;
 
     /// Answers with these datagrams, then never.
     struct Script(Vec<Vec<u8>>, Vec<u8>);
@@ -132,6 +136,15 @@ mod tests {
 
     #[test]
     fn a_wrong_answer_ends_the_cycle_soon_and_a_client_that_gives_none_is_gone() {
+        // Nothing is asked of it.
+        let mut robot = LwrRobot::new(RobotSetup {
+            scenario: Scenario::find("two-level").expect("built in"),
+            plant: PlantKind::Ideal,
+            contacts: false,
+            seed: 1,
+            plant_options: PlantOptions::default(),
+            options: RobotOptions::default(),
+        });
         let (wrong, right) = (vec![9, 0, 8, 0], vec![9, 0, 7, 0]);
         for (script, there, soon) in [
             (vec![], false, false),
@@ -142,7 +155,8 @@ mod tests {
             let (count, begun, mut answers) = (script.len(), Instant::now(), Vec::new());
             let mut client = Script(script, Vec::new());
             let peer: &mut dyn Peer<LwrBox> = &mut client;
-            let answered = peer.exchange(&[7, 0, 0, 0], Expect::Answer, &mut answers);
+            let measurement = [7, 0, 0, 0];
+            let answered = peer.exchange(&mut robot, &measurement, Expect::Answer, &mut answers);
             assert_eq!(answered.expect("no socket"), there);
             assert_eq!(answers.len(), count);
             assert_eq!(begun.elapsed() < PATIENCE / 2, soon);

@@ -7,7 +7,7 @@ use controller_core::joint::JointState;
 use fci::request::Load;
 use fci::{Request, RobotError, RobotMode, State, StatePacket, Version};
 use hil_sim::plant::PlantOptions;
-use hil_sim::robot::{Answer, ControlBox as _, FciBox, FciOptions, FciRobot, RobotSetup};
+use hil_sim::robot::{Answer, ControlBox as _, Event, FciBox, FciOptions, FciRobot, RobotSetup};
 use hil_sim::summary::Verdict;
 
 use cell::names::PlantKind;
@@ -27,7 +27,7 @@ impl Bench {
     fn new(version: Version, plant: PlantKind, duration_s: f64) -> Self {
         let mut scenario = Scenario::find("two-level-fr3").expect("built in");
         scenario.duration_s = duration_s;
-        let options = FciOptions::of(&scenario, version.number()).expect("a version");
+        let options = FciOptions::of(&scenario, version);
         let robot = FciRobot::new(RobotSetup {
             scenario,
             plant,
@@ -51,10 +51,11 @@ impl Bench {
     fn ask(&mut self, request: &Request) {
         let bytes = bytes(self.version, self.next_id, request);
         self.next_id += 1;
-        let handled = self.robot.control().receive(&mut &bytes[..]);
-        let handled = handled.expect("a connection").expect("a request");
-        assert_eq!(handled.refused, None);
-        self.robot.note(&handled);
+        let mut rest = &bytes[..];
+        self.robot.hear_requests(&mut rest).expect("a connection");
+        assert!(rest.is_empty());
+        let refused = |event: &Event| event.text.contains("refused");
+        assert!(!self.robot.events().iter().any(refused));
         while self.robot.control().replies(&mut [0; 1000]) > 0 {}
     }
 
@@ -140,7 +141,7 @@ fn the_first_command_starts_the_clock() {
         bench.drive(torque);
     }
     assert!(bench.robot.is_finished());
-    let fci = bench.robot.judged().fci.expect("its figures");
+    let fci = bench.robot.summary().fci.expect("its figures");
     assert_eq!((fci.motions, fci.commands, fci.lost), (1, 2001, 0));
     assert_eq!(fci.command_share, Some(1.0));
     assert_eq!(fci.success_rate_min, Some(1.0));
@@ -200,7 +201,7 @@ fn an_arm_that_is_too_fast_is_stopped_and_held() {
         bench.cycle();
     }
     bench.start();
-    let summary = bench.robot.judged();
+    let summary = bench.robot.summary();
     assert_eq!(summary.verdict, Verdict::Fail);
     let fci = summary.fci.expect("its figures");
     assert_eq!(fci.errors, [expected.name()]);

@@ -9,7 +9,7 @@ use controller_core::law::null_space::NullDamping;
 use controller_core::{Controller, Measurement, State};
 use fri::InterfaceState;
 use hil_sim::arm_points::origins;
-use hil_sim::link::{Expect, LockStep, Peer};
+use hil_sim::link::{Expect, LockStep, Peer, finish};
 use hil_sim::robot::{LwrBox, LwrRobot, RobotOptions};
 use hil_sim::summary::Summary;
 
@@ -65,6 +65,7 @@ impl Bridge {
 impl Peer<LwrBox> for Bridge {
     fn exchange(
         &mut self,
+        _: &mut LwrRobot,
         measurement: &[u8],
         _: Expect,
         answers: &mut Vec<Vec<u8>>,
@@ -98,14 +99,13 @@ fn run(plant: PlantKind, contacts: bool, dead_cycles: usize, faults: &[&str]) ->
     let mut robot = LwrRobot::new(setup);
     let mut link = LockStep::new(&faults, 0.002, 1);
     let mut last = -1.0;
-    while !robot.is_finished() {
-        link.cycle(&mut robot, &mut bridge).expect("no socket");
-        if let Some(instant) = robot.advance() {
+    while !robot.is_over() {
+        if let Some(instant) = link.step(&mut robot, &mut bridge).expect("no socket") {
             assert!(instant.t_s > last);
             last = instant.t_s;
         }
     }
-    link.finish(&mut robot, &mut bridge).expect("no socket");
+    finish(&mut robot, &mut bridge).expect("no socket");
     assert!((last - 19.998).abs() < 1e-9);
     robot.summary()
 }

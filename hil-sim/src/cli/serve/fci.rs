@@ -14,9 +14,6 @@ use cell::realtime::Realtime;
 use cell::terminal::tell;
 use record::run::Sample;
 
-/// Cycle of the interface \[ms\].
-const CYCLE_MS: f64 = 1.0;
-
 /// Where it listens, if nothing is said: the vendor's port.
 pub(super) const PORT: u16 = 1337;
 
@@ -46,11 +43,7 @@ pub(super) fn serve(
 ) -> Result<Option<Served>, Invalid> {
     let number = setup.options.version.number();
     let scenario = setup.scenario.clone();
-    if scenario.cycle_ms != CYCLE_MS {
-        let given = format_args!("{} ms", scenario.cycle_ms).to_string();
-        let allowed = "1 ms, the only one that the FCI has: --cycle-ms 1";
-        return Err(Invalid::new("cycle", given, allowed));
-    }
+    FciOptions::check_cycle(&scenario)?;
     announce(&scenario, f64::INFINITY)?;
     let sockets = service.open()?;
     let mut files = Files::create(Folder::claim(out)?, &scenario, setup.contacts)?;
@@ -77,7 +70,7 @@ pub(super) fn serve(
         tell(format_args!("error: {why}"));
         return Ok(None);
     }
-    let mut summary = robot.judged();
+    let mut summary = robot.summary();
     if let Some(fci) = &mut summary.fci {
         fci.realtime = realtime;
     }

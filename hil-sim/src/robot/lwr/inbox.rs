@@ -3,10 +3,10 @@
 use fri::sequence::{Arrival, Receiver, Sender};
 use fri::{Error, Header};
 
+use super::figures::{LinkFigures, Rejected};
 use super::krc::Refusal;
 use super::order::Order;
 use crate::robot::control_box::Answer;
-use crate::robot::figures::{LinkFigures, Rejected};
 
 /// Measurements whose answers are still known.
 const REMEMBERED: usize = 1024;

@@ -2,12 +2,15 @@
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use fci::command;
 use fci::stream::REQUEST_LEN_MAX;
 
+use crate::link::{Expect, Peer};
 use crate::robot::{ControlBox as _, FciBox, FciRobot};
+use crate::serve::transport::{PATIENCE, POLL};
 use cell::invalid::Invalid;
 
 /// The longest that a command is waited for before the stream is looked at again.
@@ -15,6 +18,17 @@ const LOOK: Duration = Duration::from_micros(500);
 
 /// How long a client may leave replies unread.
 const UNREAD: Duration = Duration::from_secs(1);
+
+/// Cycle of the interface.
+pub const CYCLE: Duration = Duration::from_millis(1);
+
+/// How long a damaged state is waited for to be answered.
+const PERHAPS: Duration = Duration::from_millis(5);
+
+/// How long the first command of a motion is waited for in lock-step, state by state. Clients read
+/// one or two before they answer; one that is kept from running for a while must not find that the
+/// state it answers is no more the last.
+const BEGINNING: Duration = Duration::from_millis(100);
 
 /// A listener, the socket of the datagrams, and who is connected.
 pub struct Sockets {
@@ -79,14 +93,12 @@ impl Sockets {
         self.last
     }
 
-    /// Whether somebody is connected.
-    pub fn is_open(&self) -> bool {
-        self.client.is_some()
-    }
-
     /// Lets a client in, takes its requests, sends the replies. A second client is turned away.
     pub fn talk(&mut self, robot: &mut FciRobot) -> io::Result<()> {
-        if let Some((stream, address)) = arrived(self.listener.accept())?
+        let newcomer = arrived(self.listener.accept())?;
+        // One that comes again has closed its connection before: that is seen first.
+        self.attend(robot);
+        if let Some((stream, address)) = newcomer
             && self.client.is_none()
         {
             stream.set_nonblocking(true)?;
@@ -98,9 +110,15 @@ impl Sockets {
                 address,
                 bytes: Vec::new(),
             });
+            self.attend(robot);
         }
+        Ok(())
+    }
+
+    /// The stream of the client that is here.
+    fn attend(&mut self, robot: &mut FciRobot) {
         let Some(client) = &mut self.client else {
-            return Ok(());
+            return;
         };
         match client.talk(robot) {
             Ok(true) => {}
@@ -113,17 +131,6 @@ impl Sockets {
                 robot.disconnect(Some(why));
             }
         }
-        Ok(())
-    }
-
-    /// The next state as a datagram.
-    pub fn emit(&mut self, robot: &mut FciRobot) -> io::Result<Vec<u8>> {
-        let mut state = FciBox::EMPTY;
-        robot.measurement(&mut state);
-        let datagram = state.as_ref().to_vec();
-        // A reflex has a reply.
-        self.talk(robot)?;
-        Ok(datagram)
     }
 
     /// Sends a state to the port that the client has named; that nobody is there is no error.
@@ -158,16 +165,53 @@ impl Sockets {
     pub fn wait(&self) -> io::Result<()> {
         arrived(self.datagrams.peek(&mut [0; 8])).map(|_| ())
     }
+}
 
-    /// The end: what is due still goes out.
-    pub fn farewell(&mut self, robot: &mut FciRobot) -> io::Result<()> {
-        self.talk(robot)?;
-        // The client reads until a state shows the end of the motion.
-        for _ in 0..3 {
-            let state = self.emit(robot)?;
-            self.send(robot, &state)?;
+impl Peer<FciBox> for Sockets {
+    fn exchange(
+        &mut self,
+        robot: &mut FciRobot,
+        state: &[u8],
+        expect: Expect,
+        commands: &mut Vec<Vec<u8>>,
+    ) -> io::Result<bool> {
+        self.send(robot, state)?;
+        let begins = robot.control_box().commands();
+        let patience = match expect {
+            Expect::Answer => PATIENCE,
+            Expect::Perhaps => PERHAPS,
+            Expect::First if begins => BEGINNING,
+            Expect::First => CYCLE,
+            Expect::Nothing | Expect::Farewell => return Ok(true),
+        };
+        let deadline = Instant::now() + patience;
+        while Instant::now() < deadline {
+            self.talk(robot)?;
+            if expect != Expect::First && !robot.is_driven() {
+                // The motion has ended: there is no more to come.
+                return Ok(true);
+            }
+            match self.receive()? {
+                Some(command) => {
+                    let answered = FciBox::answers(state, &command);
+                    commands.push(command);
+                    if answered {
+                        return Ok(true);
+                    }
+                }
+                None if expect == Expect::First => sleep(POLL),
+                None => self.wait()?,
+            }
         }
-        Ok(())
+        Ok(false)
+    }
+
+    fn talk(&mut self, robot: &mut FciRobot) -> io::Result<()> {
+        Sockets::talk(self, robot)
+    }
+
+    fn has_left(&self) -> bool {
+        self.client.is_none()
     }
 }
 
@@ -186,13 +230,7 @@ impl Connection {
             self.bytes.extend(&room[..count]);
         }
         let mut rest = &self.bytes[..];
-        let broken = loop {
-            match robot.control().receive(&mut rest) {
-                Ok(Some(handled)) => robot.note(&handled),
-                Ok(None) => break None,
-                Err(broken) => break Some(broken),
-            }
-        };
+        let heard = robot.hear_requests(&mut rest);
         let left = rest.len();
         self.bytes.drain(..self.bytes.len() - left);
         let mut room = [0; 4096];
@@ -209,9 +247,9 @@ impl Connection {
                 .and_then(|()| self.stream.set_nonblocking(true));
             sent.map_err(told)?;
         }
-        match broken {
-            Some(broken) => Err(broken.to_string()),
-            None => Ok(true),
+        match heard {
+            Err(broken) => Err(broken.to_string()),
+            Ok(()) => Ok(true),
         }
     }
 }
