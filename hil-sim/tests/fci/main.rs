@@ -2,5 +2,6 @@
 
 mod arm;
 mod client;
+mod measurement;
 mod model;
 mod sockets;
