@@ -39,7 +39,8 @@ impl<T: Real> Asked<T> {
 
 /// What of commands along the directions of a level is left by the limits that they have near
 /// where directions are lost, and whether anything was cut. Not direction by direction: where
-/// mobilities cross directions turn by a right angle, and a cut would turn with them.
+/// mobilities cross directions turn by a right angle, and a cut would turn with them. Directions that are
+/// lost much more than another one do not matter to it.
 #[cold]
 #[inline(never)]
 pub(super) fn cut_together<T: Real>(
@@ -56,7 +57,8 @@ pub(super) fn cut_together<T: Real>(
     for (cut, &own) in cut.iter_mut().zip(&most).take(used) {
         let mut squared = T::ZERO;
         for (&command, &other) in commands.iter().zip(&most).take(used) {
-            let share = command / other.most(own);
+            let nearer = (other / own).least(T::ONE);
+            let share = command / other * (nearer * nearer);
             squared += share * share;
         }
         let excess = squared.square_root().most(T::ONE);
