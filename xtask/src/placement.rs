@@ -32,7 +32,7 @@ const THUNK: &str = "LongThunk_";
 /// Called from ITCM and in flash all the same: what bends a straight arm, and what changes tasks and
 /// gains. They run while a level is released and off its target, and while something changes, and
 /// would take a tenth of ITCM.
-const IN_FLASH: [&str; 4] = ["way_out", "ActiveTasks", "forget_levels", "cut_together"];
+const IN_FLASH: [&str; 3] = ["way_out", "ActiveTasks", "forget_levels"];
 
 /// Builds it and checks the addresses.
 pub fn run() -> Outcome {
