@@ -27,8 +27,8 @@ cd "$(dirname "$0")/../.."
 # Most instructions of a cycle.
 limit() {
   case "$1" in
-    idle) echo 14200 ;;
-    step) echo 23600 ;;
+    idle) echo 14100 ;;
+    step) echo 23500 ;;
   esac
 }
 
