@@ -90,6 +90,6 @@ pub struct Counted {
     pub largest_torque_step_nm: f64,
     /// The robot's own lateness; none in virtual time.
     pub own_lateness: Option<OwnLateness>,
-    /// What happened, at most [`EVENTS_MAX`] of them.
+    /// What happened, the first 200 events.
     pub events: Vec<Event>,
 }
