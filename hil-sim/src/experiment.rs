@@ -25,7 +25,7 @@ use crate::sample::{LevelProbes, Stop, UnsafeMotion};
 use crate::summary::{Conditions, Summary};
 use cell::invalid::Invalid;
 use cell::names::{MeasurementKind, Named, NullStiffness, PlantKind, RobotInterface};
-use cell::scenario::Scenario;
+use cell::scenario::{Scenario, TimedTransition};
 use record::run::Sample;
 
 use driver::{Driver, PositionDriver, TorqueDriver};
@@ -128,6 +128,14 @@ impl Experiment {
         }
     }
 
+    /// What its client has: the session, and the changes of tasks and gains on the way.
+    fn led(
+        &self,
+        controller: &Controller<f64>,
+    ) -> Result<(SessionConfig, Vec<TimedTransition>), Invalid> {
+        Ok((self.session()?, self.scenario.transitions(controller)?))
+    }
+
     /// Runs it over FRI, robot and bridge in this process.
     fn run_over_fri(
         &self,
@@ -135,9 +143,7 @@ impl Experiment {
         sink: impl FnMut(&Sample) -> io::Result<()>,
         progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
-        let config = self.session().map_err(io::Error::other)?;
-        let changes = self.scenario.transitions(controller);
-        let changes = changes.map_err(io::Error::other)?;
+        let (config, changes) = self.led(controller).map_err(io::Error::other)?;
         let robot = LwrRobot::new(self.robot(RobotOptions::default()));
         let client = BridgeClient::new(Lwr::new(), config, &self.scenario).changing(changes);
         self.run_over_link(robot, client, sink, progress)
@@ -150,9 +156,7 @@ impl Experiment {
         sink: impl FnMut(&Sample) -> io::Result<()>,
         progress: impl FnMut(f64),
     ) -> io::Result<Summary> {
-        let config = self.session().map_err(io::Error::other)?;
-        let changes = self.scenario.transitions(controller);
-        let changes = changes.map_err(io::Error::other)?;
+        let (config, changes) = self.led(controller).map_err(io::Error::other)?;
         let options = FciOptions::of(&self.scenario, Version::V10);
         let robot = FciRobot::new(self.robot(options));
         let client = FciClient::new(config, &self.scenario, false).changing(changes);
