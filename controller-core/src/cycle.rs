@@ -11,6 +11,7 @@ pub mod delay;
 mod inspection;
 pub mod measurement;
 pub mod observer;
+pub mod parts;
 pub mod record;
 pub mod stages;
 mod step;

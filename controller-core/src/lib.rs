@@ -77,6 +77,7 @@
 #![no_std]
 
 pub mod arm;
+pub mod cells;
 pub mod cycle;
 pub mod error;
 pub mod fault;
@@ -90,6 +91,22 @@ pub mod resolver;
 pub mod task;
 
 pub use nalgebra;
+
+/// Which text this crate was compiled from: files that were frozen from another one do not compile.
+pub const SOURCE: u64 = {
+    let (digits, mut source, mut i) = (env!("STRATUM_SOURCE").as_bytes(), 0, 0);
+    while i < digits.len() {
+        let digit = digits[i];
+        let value = if digit <= b'9' {
+            digit - b'0'
+        } else {
+            digit - b'a' + 10
+        };
+        source = source << 4 | value as u64;
+        i += 1;
+    }
+    source
+};
 
 pub use arm::{Link, LinkFrame, LinkPoint};
 pub use cycle::config::ControllerConfig;

@@ -56,10 +56,17 @@ pub trait Real:
     /// The smaller one, likewise.
     fn least(self, other: Self) -> Self;
 
+    /// `below` where `self` is less than `other`, else `otherwise`: a choice between two numbers
+    /// that are both known, by which no path of the program depends on data.
+    #[inline(always)]
+    fn choose_below(self, other: Self, below: Self, otherwise: Self) -> Self {
+        if self < other { below } else { otherwise }
+    }
+
     /// `self` limited to `low..=high`; NaN stays NaN.
     fn limited(self, low: Self, high: Self) -> Self {
-        let above = if self < low { low } else { self };
-        if above > high { high } else { above }
+        let above = self.choose_below(low, low, self);
+        high.choose_below(above, high, above)
     }
 }
 

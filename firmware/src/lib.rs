@@ -20,6 +20,7 @@
 #[cfg(any(test, not(target_os = "none")))]
 extern crate std;
 
+pub mod comparison;
 pub mod interlock;
 pub mod interlocked_controller;
 pub mod interlocked_session;

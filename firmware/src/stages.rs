@@ -38,14 +38,14 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         min: u32::MAX,
         max: 0,
         at: 0,
         inputs: 0,
     };
 
-    fn add(&mut self, count: u32, index: u32) {
+    pub(crate) fn add(&mut self, count: u32, index: u32) {
         self.inputs += 1;
         self.min = self.min.min(count);
         if count > self.max {

@@ -81,9 +81,18 @@ impl Kind {
 }
 
 /// SplitMix64.
-struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// A whole number below `end`.
+    pub(crate) fn below(&mut self, end: u32) -> u32 {
+        ((self.next() >> 32) as u32) % end.max(1)
+    }
+
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -11,6 +11,7 @@ mod docs;
 mod figures;
 mod fri;
 mod fri_check;
+mod frozen;
 mod host;
 mod hostile;
 mod limits;
@@ -46,6 +47,9 @@ fri-m7 [--serial]      the controller for a robot that speaks FRI, over UDP or a
 fri-m7 --check         the same by itself: trace as without a board, safe outputs after an
                        emergency stop and without a robot; with --serial the first
                        second over the serial port
+freeze OPTIONS OUT     the control cycle of one arm and its levels as a straight line, in a file of
+                       its own; --check holds a file against what would be written;
+                       --help has the options
 board-m7               the skeleton for the STM32H743: builds, code in ITCM, data in DTCM
 paced [--smoke] [--minutes M | --seconds S] [--load N]
                        hil-sim serve and firmware-host by the wall clock, both with
@@ -89,6 +93,7 @@ fn main() -> ExitCode {
         ["fri-m7", "--serial"] => fri::run(Medium::Serial),
         ["fri-m7", "--check"] => fri_check::run(Medium::Ethernet),
         ["fri-m7", "--check", "--serial"] => fri_check::run(Medium::Serial),
+        ["freeze", ref words @ ..] => frozen::run(words),
         ["board-m7"] => placement::run(),
         ["paced", ref words @ ..] => paced::run(words),
         ["hostile", ref words @ ..] => hostile::run(words),

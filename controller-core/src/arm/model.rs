@@ -4,6 +4,7 @@ use crate::arm::check::{ArmError, second_moment, validate};
 use crate::arm::exchange::AxisExchange;
 use crate::arm::link::LinkPoint;
 use crate::arm::parameters::{ArmParameters, LinkParameters};
+use crate::cells::Cells;
 use crate::joint::{DOF, JointVector, Lanes, Padded, Vector3, in_turn, padded, zeros};
 use crate::real::Real;
 
@@ -136,6 +137,30 @@ impl<T: Real> ArmModel<T> {
         }
         let offset = Vector3::from(point.offset.map(T::from_f64));
         reach + offset.dot(&offset).square_root()
+    }
+
+    /// What may differ from arm to arm of a kind: the body of the last link with what it carries,
+    /// by S (xx, xy, xz, yy, yz, zz), h and the mass, and the limits.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        if let Some(last) = self.links.last_mut() {
+            let [x, y, z, one] = last.moments;
+            let mut body = [
+                x[0], x[1], x[2], y[1], y[2], z[2], one[0], one[1], one[2], one[3],
+            ];
+            cells.numbers("last_link", &mut body);
+            let [xx, xy, xz, yy, yz, zz, hx, hy, hz, mass] = body;
+            last.moments = [
+                Lanes::from([xx, xy, xz, hx]),
+                Lanes::from([xy, yy, yz, hy]),
+                Lanes::from([xz, yz, zz, hz]),
+                Lanes::from([hx, hy, hz, mass]),
+            ];
+        }
+        let [least, greatest] = &mut self.position_range;
+        cells.numbers("least_position", least.as_mut_slice());
+        cells.numbers("greatest_position", greatest.as_mut_slice());
+        cells.numbers("speed_limit", self.speed_limit.as_mut_slice());
+        cells.numbers("torque_limit", self.torque_limit.as_mut_slice());
     }
 
     /// Smallest and largest q \[rad\] per joint.

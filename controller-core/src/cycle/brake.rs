@@ -23,6 +23,8 @@ pub(super) struct Brake<T: Real> {
     pub mode: Mode,
     /// Time since a measurement could be followed \[s\].
     pub blind_s: T,
+    /// Whether the measurement of the cycle is followed.
+    pub sees: bool,
 }
 
 impl<T: Real> Brake<T> {
@@ -30,6 +32,7 @@ impl<T: Real> Brake<T> {
         Self {
             mode: Mode::Braking,
             blind_s: T::ZERO,
+            sees: false,
         }
     }
 }

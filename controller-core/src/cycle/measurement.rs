@@ -42,6 +42,21 @@ pub(crate) fn believe<T: Real>(
     if believed {
         return Ok(());
     }
+    believe_in_turn(arm, cycle_s, measurement)
+}
+
+/// The same one by one.
+#[cold]
+#[inline(never)]
+pub(crate) fn believe_in_turn<T: Real>(
+    arm: &ArmModel<T>,
+    cycle_s: T,
+    measurement: &Measurement<T>,
+) -> Result<(), Fault> {
+    let Measurement { q, dq, interval_s } = measurement;
+    let factor = T::from_f64(SPEED_FACTOR);
+    let [low, high] = INTERVAL_FACTORS.map(|factor| T::from_f64(factor) * cycle_s);
+    let speeds = arm.speed_limit();
     believe_posture(arm, q)?;
     for (index, (&value, &limit)) in (1..).zip(dq.iter().zip(speeds)) {
         let limit = limit * factor;

@@ -15,6 +15,7 @@
 //! that the arm starts at rest.
 
 use crate::arm::dynamics::Dynamics;
+use crate::cells::Cells;
 use crate::joint::{DOF, JointState, JointVector, exponentials, zeros};
 use crate::real::Real;
 
@@ -44,6 +45,15 @@ impl<T: Real> Observer<T> {
             residual: zeros(),
             started: false,
         }
+    }
+
+    /// What it remembers.
+    pub(super) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("momentum", self.momentum.as_mut_slice());
+        cells.numbers("observer_input", self.input.as_mut_slice());
+        cells.numbers("applied_torque", self.applied_torque.as_mut_slice());
+        cells.numbers("residual", self.residual.as_mut_slice());
+        cells.flag("started", &mut self.started);
     }
 
     /// One step with `gain` K_I \[1/s\] per joint, the measured interval h \[s\] > 0

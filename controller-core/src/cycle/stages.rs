@@ -10,9 +10,9 @@ use crate::arm::kinematics::Kinematics;
 use crate::joint::{DOF, JointState, all_finite};
 use crate::law::allocation::TorqueLimits;
 use crate::law::control::TorqueDemand;
-use crate::law::limits::projection::Wished;
+use crate::law::limits::projection::{Projection, Wished};
 use crate::law::limits::way_out::Straight;
-use crate::law::limits::wish::Ask;
+use crate::law::limits::wish::{Ask, Wish};
 use crate::law::motion::MotionSplit;
 use crate::law::null_space::Posture;
 use crate::real::Real;
@@ -367,16 +367,31 @@ fn spectral_motion<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: 
 }
 
 #[inline(never)]
-fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    let levels = data.tasks.levels(&controller.levels);
-    let null_force = data.tasks.compliance(&controller.compliance).force(
+fn wish<T: Real>(controller: &Controller<T>, input: &Input<'_, T>, data: &mut Data<T>) {
+    null_force(controller, input, data);
+    way_out(controller, input, data);
+    with_ask(controller, data, Wish::update);
+}
+
+/// f - D n.
+#[inline(always)]
+pub(super) fn null_force<T: Real>(
+    controller: &Controller<T>,
+    _: &Input<'_, T>,
+    data: &mut Data<T>,
+) {
+    data.control.null_force = data.tasks.compliance(&controller.compliance).force(
         &data.dynamics,
         &data.rows,
         &data.motion,
         &(data.posture - data.joints.q),
     );
+}
+
+#[inline(always)]
+pub(super) fn way_out<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
     data.way_out.update(&Straight {
-        levels,
+        levels: data.tasks.levels(&controller.levels),
         bounds: &controller.bounds,
         kinematics: &data.kinematics,
         dynamics: &data.dynamics,
@@ -384,12 +399,21 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         spectrum: &data.spectrum,
         motion: &data.whitened_motion,
         q: &data.joints.q,
-        null_force: &null_force,
+        null_force: &data.control.null_force,
         residual: &data.observer.residual,
         posture: &data.posture,
     });
-    data.wish.update(&Ask {
-        levels,
+}
+
+/// Runs what is about the wish on what it is made from.
+#[inline(always)]
+pub(super) fn with_ask<T: Real>(
+    controller: &Controller<T>,
+    data: &mut Data<T>,
+    run: impl FnOnce(&mut Wish<T>, &Ask<'_, T>),
+) {
+    let ask = Ask {
+        levels: data.tasks.levels(&controller.levels),
         bounds: &controller.bounds,
         torque_limit: controller.arm.torque_limit(),
         dynamics: &data.dynamics,
@@ -397,9 +421,10 @@ fn wish<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T
         spectrum: &data.spectrum,
         motion: &data.whitened_motion,
         way_out: &data.way_out,
-        null_force: &null_force,
+        null_force: &data.control.null_force,
         residual: &data.observer.residual,
-    });
+    };
+    run(&mut data.wish, &ask);
 }
 
 #[inline(never)]
@@ -408,7 +433,17 @@ fn bounds<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data
 }
 
 fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {
-    data.projection.update(&Wished {
+    with_wished(controller, data, Projection::update);
+}
+
+/// Runs what is about the projection on what is projected.
+#[inline(always)]
+pub(super) fn with_wished<T: Real>(
+    controller: &Controller<T>,
+    data: &mut Data<T>,
+    run: impl FnOnce(&mut Projection<T>, &Wished<'_, T>),
+) {
+    let wished = Wished {
         acceleration: &data.wish.acceleration,
         torque: &data.wish.torque,
         bounds: &data.bounds,
@@ -417,7 +452,8 @@ fn projection<T: Real>(controller: &Controller<T>, _: &Input<'_, T>, data: &mut 
         rows: &data.rows,
         spectrum: &data.spectrum,
         null_velocity: &data.motion.null_velocity,
-    });
+    };
+    run(&mut data.projection, &wished);
 }
 
 fn projected_demand<T: Real>(_: &Controller<T>, _: &Input<'_, T>, data: &mut Data<T>) {

@@ -238,30 +238,12 @@ impl<T: Real> Controller<T> {
             state.brake = Brake::new();
         }
         state.fault = Some(fault);
-        let followed = state.brake.mode != Mode::Stopped && self.follows(state, input.measurement);
-        let demand = if followed {
-            let data = &mut state.data;
-            self.run_listed(&Self::OBSERVED, StageName::HoldingTorque, input, data);
-            state.seen = true;
-            state.brake.blind_s = T::ZERO;
-            state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
-            let dynamics = &state.data.dynamics;
-            dynamics.gravity - dynamics.momentum * self.brake_rate
-        } else {
-            let brake = &mut state.brake;
-            brake.blind_s += self.cycle_s;
-            let left = T::ONE - brake.blind_s * T::from_f64(1.0 / BLIND_FADE_S);
-            let ends = left <= T::ZERO || brake.mode == Mode::Stopped;
-            brake.mode = if ends { Mode::Stopped } else { Mode::Blind };
-            state.data.holding_torque * if ends { T::ZERO } else { left }
-        };
-        let limits = TorqueLimits {
-            limit: self.arm.torque_limit(),
-            step: &self.brake_step,
-        };
-        let allocation = &mut state.data.allocation;
-        allocation.update(&TorqueDemand(demand), &limits);
-        let (mode, torque) = (state.brake.mode, allocation.torque);
+        self.look(state, input);
+        self.demand_hold(state, input);
+        self.allow_hold(&mut state.data);
+        let (followed, mode) = (state.brake.sees, state.brake.mode);
+        let allocation = &state.data.allocation;
+        let torque = allocation.torque;
         Step {
             torque,
             residual: zeros(),
@@ -280,6 +262,42 @@ impl<T: Real> Controller<T> {
                 ..Status::CLEAR
             },
         }
+    }
+
+    /// Of a cycle with a fault: whether it sees.
+    pub(super) fn look(&self, state: &mut State<T>, input: &Input<'_, T>) {
+        let stopped = state.brake.mode == Mode::Stopped;
+        state.brake.sees = !stopped && self.follows(state, input.measurement);
+    }
+
+    /// What brakes and holds the arm, by what is seen or was.
+    pub(super) fn demand_hold(&self, state: &mut State<T>, input: &Input<'_, T>) {
+        let demand = if state.brake.sees {
+            let data = &mut state.data;
+            self.run_listed(&Self::OBSERVED, StageName::HoldingTorque, input, data);
+            state.seen = true;
+            state.brake.blind_s = T::ZERO;
+            state.brake.mode = next(state.brake.mode, &state.data.joints.dq);
+            let dynamics = &state.data.dynamics;
+            dynamics.gravity - dynamics.momentum * self.brake_rate
+        } else {
+            let brake = &mut state.brake;
+            brake.blind_s += self.cycle_s;
+            let left = T::ONE - brake.blind_s * T::from_f64(1.0 / BLIND_FADE_S);
+            let ends = left <= T::ZERO || brake.mode == Mode::Stopped;
+            brake.mode = if ends { Mode::Stopped } else { Mode::Blind };
+            state.data.holding_torque * if ends { T::ZERO } else { left }
+        };
+        state.data.demand = TorqueDemand(demand);
+    }
+
+    /// What of it is allowed.
+    pub(super) fn allow_hold(&self, data: &mut Data<T>) {
+        let limits = TorqueLimits {
+            limit: self.arm.torque_limit(),
+            step: &self.brake_step,
+        };
+        data.allocation.update(&data.demand, &limits);
     }
 
     /// Whether the arm can be where a measurement says, seen from where it was last: finite,

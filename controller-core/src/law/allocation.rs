@@ -1,6 +1,7 @@
 //! A demanded torque becomes one that may reach the motors.
 
 use super::control::TorqueDemand;
+use crate::cells::Cells;
 use crate::fault::{Fault, FaultKind, IndexSet, Quantity};
 use crate::joint::{DOF, JointVector, all_finite, zeros};
 use crate::real::Real;
@@ -68,6 +69,15 @@ impl<T: Real> Allocation<T> {
             self.rate_limited.0 |= u8::from(torque != cut) << index;
         }
         self.acts = true;
+    }
+
+    /// What it remembers and tells.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("torque", self.torque.as_mut_slice());
+        cells.set("saturated", &mut self.saturated);
+        cells.set("rate_limited", &mut self.rate_limited);
+        cells.flag("finite", &mut self.finite);
+        cells.flag("acts", &mut self.acts);
     }
 
     /// The next torque starts from `acting` \[Nm\].

@@ -21,6 +21,7 @@
 //! care of it. The factorisation uses Householder reflections, whose Q is
 //! orthogonal to rounding however close to singular the tasks are.
 
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::{Cholesky, for_each_joint};
@@ -98,10 +99,12 @@ impl<T: Real> Hierarchy<T> {
             norm_squared += row[i] * row[i];
         }
         let norm = norm_squared.square_root();
-        let pivot = -norm.with_sign_of(row[K]);
-        let resolvable = norm_squared >= T::from_f64(RANK_THRESHOLD);
+        // Against the entry; of a zero whatever its sign.
+        let pivot = row[K].choose_below(T::ZERO, norm, -norm);
+        let threshold = T::from_f64(RANK_THRESHOLD);
+        let resolvable = |yes: T, no: T| norm_squared.choose_below(threshold, no, yes);
         // Below this a row is zero in either precision: no reflection.
-        let turns = norm_squared > T::from_f64(1e-30);
+        let turns = |yes: T, no: T| T::from_f64(1e-30).choose_below(norm_squared, yes, no);
 
         let head = row[K] - pivot;
         self.factors[K][K] = head;
@@ -109,11 +112,9 @@ impl<T: Real> Hierarchy<T> {
         // Divisors are made harmless before the division: no branch.
         let scale = norm * (norm + (pivot + head).magnitude());
         let one = T::ONE;
-        let inverse_scale = one / if turns { scale } else { one };
-        let inverse_pivot = one / if resolvable { pivot } else { one };
-        self.scale[K] = if turns { inverse_scale } else { T::ZERO };
-        self.inverse_pivot[K] = if resolvable { inverse_pivot } else { T::ZERO };
-        self.deficient.insert_if(K, !resolvable);
+        self.scale[K] = turns(one / turns(scale, one), T::ZERO);
+        self.inverse_pivot[K] = resolvable(one / resolvable(pivot, one), T::ZERO);
+        self.deficient.insert_if(K, norm_squared < threshold);
     }
 
     /// Applies H_K, which leaves entries before `K` as they are.
@@ -134,6 +135,11 @@ impl<T: Real> Hierarchy<T> {
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// What it tells.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.set("rank", &mut self.deficient);
     }
 
     /// Rows that are not resolvable given the rows above them.

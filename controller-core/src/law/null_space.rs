@@ -2,6 +2,7 @@
 
 use super::motion::MotionSplit;
 use crate::arm::dynamics::Dynamics;
+use crate::cells::Cells;
 use crate::error::{ConfigError, Gain};
 use crate::gain;
 use crate::joint::{DOF, JointMatrix, JointVector, in_turn, zeros};
@@ -161,6 +162,15 @@ impl<T: Real> Compliance<T> {
                     NullDamping::Inertia(_) => false,
                 },
             ],
+        }
+    }
+
+    /// K_q, and D or c.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("null_stiffness", self.stiffness.as_mut_slice());
+        match &mut self.damping {
+            Damping::Joint(damping) => cells.numbers("null_damping", damping.as_mut_slice()),
+            Damping::Inertia(rate) => cells.numbers("damping_rate", core::slice::from_mut(rate)),
         }
     }
 

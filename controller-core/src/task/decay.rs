@@ -1,5 +1,6 @@
 //! How the difference between two motions dies out.
 
+use crate::cells::Cells;
 use crate::joint::{Vector3, zeros};
 use crate::real::Real;
 
@@ -29,6 +30,13 @@ impl<T: Real> Clock<T> {
             elapsed_s: T::ZERO,
             duration_s,
         }
+    }
+
+    /// Time passed and time given \[s\].
+    pub fn visit(&mut self, cells: &mut impl Cells<T>) {
+        let mut times = [self.elapsed_s, self.duration_s];
+        cells.numbers("clock_s", &mut times);
+        [self.elapsed_s, self.duration_s] = times;
     }
 
     /// Whether some is left.
@@ -91,7 +99,11 @@ impl<T: Real> Decay<T> {
     /// From the difference and its first two derivatives by time, in `duration_s` > 0; over
     /// at once where all are zero.
     pub fn new([e, de, dde]: [Vector3<T>; 3], duration_s: T) -> Self {
-        if [e, de, dde].iter().flatten().all(|value| *value == T::ZERO) {
+        let mut largest = T::ZERO;
+        for value in [e, de, dde].iter().flatten() {
+            largest = value.magnitude().most(largest);
+        }
+        if largest == T::ZERO {
             return Self::NONE;
         }
         let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
@@ -100,6 +112,14 @@ impl<T: Real> Decay<T> {
             coefficients: [e, e * three + de, e * six + de * three + dde * T::HALF],
             clock: Clock::new(duration_s),
         }
+    }
+
+    /// Its coefficients and its clock.
+    pub fn visit(&mut self, cells: &mut impl Cells<T>) {
+        for coefficient in &mut self.coefficients {
+            cells.numbers("decay", coefficient.as_mut_slice());
+        }
+        self.clock.visit(cells);
     }
 
     /// Whether there is a difference.

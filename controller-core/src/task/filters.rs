@@ -2,6 +2,7 @@
 
 use super::Axes;
 use super::level_limits::LevelLimits;
+use crate::cells::Cells;
 use crate::joint::{Matrix3, Vector3, in_turn, zeros};
 use crate::linalg::approach;
 use crate::real::Real;
@@ -86,7 +87,7 @@ impl<T: Real> Filter<T> {
     #[inline(always)]
     fn of(&self, z: T, inverse: T) -> T {
         let line = self.end - self.slope * z;
-        if z >= self.threshold { inverse } else { line }
+        z.choose_below(self.threshold, line, inverse)
     }
 }
 
@@ -151,6 +152,33 @@ impl<T: Real> LevelFilters<T> {
             approach: approach_rate(gains, axes),
             error_speed: thresholds.error_speed / length,
         }
+    }
+
+    /// Its numbers.
+    pub fn visit(&mut self, cells: &mut impl Cells<T>) {
+        for (name, filter) in [("drive", &mut self.drive), ("keep", &mut self.keep)] {
+            let mut numbers = [filter.threshold, filter.end, filter.slope];
+            cells.numbers(name, &mut numbers);
+            [filter.threshold, filter.end, filter.slope] = numbers;
+        }
+        let mut numbers = [
+            self.inverse_release,
+            self.lost_command,
+            self.free,
+            self.stiff_cubed,
+            self.give,
+            self.error_speed,
+        ];
+        cells.numbers("limits", &mut numbers);
+        [
+            self.inverse_release,
+            self.lost_command,
+            self.free,
+            self.stiff_cubed,
+            self.give,
+            self.error_speed,
+        ] = numbers;
+        cells.numbers("approach", self.approach.as_mut_slice());
     }
 
     /// d and p \[kg\] of a direction of mobility z \[1/kg\].

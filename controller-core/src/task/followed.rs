@@ -18,9 +18,10 @@
 mod level;
 mod posture;
 
-use super::level::Levels;
+use super::level::{Level, Levels};
 use super::target::{Reference, Target};
 use crate::arm::kinematics::Kinematics;
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{JointVector, zeros};
 use crate::ranges::MAX_LEVELS;
@@ -88,57 +89,97 @@ impl<T: Real> Followed<T> {
         q: &JointVector<T>,
         interval_s: T,
     ) {
-        let (targets, at_once) = (reference.targets(), self.at_once);
-        let mut joining = IndexSet::NONE;
+        self.joining = IndexSet::NONE;
         for level in levels.in_order() {
-            let slot = level.slot;
-            let (Some(followed), Some(target)) = (self.levels.get_mut(slot), targets.get(slot))
-            else {
-                continue;
-            };
-            let target = if stale.contains(slot) {
-                &Target::Hold
-            } else {
-                target
-            };
-            let goes_on = match target {
-                Target::Hold => {
-                    followed.hold(&level.tracked, kinematics, interval_s, at_once);
-                    true
-                }
-                Target::Position { x, dx, ddx } => {
-                    let way = x - followed.now.position() - dx * interval_s;
-                    let goes_on = at_once | followed.goes_on(&way, Kind::Position);
-                    if goes_on {
-                        for axis in 0..3 {
-                            followed.now.place[axis] = x[axis];
-                        }
-                        followed.follow(Kind::Position, dx, ddx);
-                    }
-                    goes_on
-                }
-                Target::Orientation { q, w, dw } => {
-                    let way = turn(q, &followed.now.place) - w * interval_s;
-                    let goes_on = at_once | followed.goes_on(&way, Kind::Orientation);
-                    if goes_on {
-                        for entry in 0..4 {
-                            followed.now.place[entry] = q[entry];
-                        }
-                        followed.follow(Kind::Orientation, w, dw);
-                    }
-                    goes_on
-                }
-            };
-            if !goes_on {
-                followed.join(level, target, kinematics, interval_s);
-            }
-            joining.insert_if(slot, followed.decay.lasts());
+            self.follow_target(level, reference, stale, kinematics, interval_s);
         }
-        self.posture
-            .advance(&reference.posture, q, interval_s, at_once);
-        joining.insert_if(POSTURE_BIT, self.posture.joins());
-        self.joining = joining;
+        self.follow_posture(&reference.posture, q, interval_s);
+    }
+
+    /// The part of [`Followed::update`] that is about one level.
+    #[inline(always)]
+    pub(crate) fn follow_target(
+        &mut self,
+        level: &Level<T>,
+        reference: &Reference<T>,
+        stale: IndexSet,
+        kinematics: &Kinematics<T>,
+        interval_s: T,
+    ) {
+        let (slot, at_once) = (level.slot, self.at_once);
+        let (Some(followed), Some(target)) =
+            (self.levels.get_mut(slot), reference.targets().get(slot))
+        else {
+            return;
+        };
+        let target = if stale.contains(slot) {
+            &Target::Hold
+        } else {
+            target
+        };
+        let goes_on = match target {
+            Target::Hold => {
+                followed.hold(&level.tracked, kinematics, interval_s, at_once);
+                true
+            }
+            Target::Position { x, dx, ddx } => {
+                let way = x - followed.now.position() - dx * interval_s;
+                let goes_on = at_once | followed.goes_on(&way, Kind::Position);
+                if goes_on {
+                    for axis in 0..3 {
+                        followed.now.place[axis] = x[axis];
+                    }
+                    followed.follow(Kind::Position, dx, ddx);
+                }
+                goes_on
+            }
+            Target::Orientation { q, w, dw } => {
+                let way = turn(q, &followed.now.place) - w * interval_s;
+                let goes_on = at_once | followed.goes_on(&way, Kind::Orientation);
+                if goes_on {
+                    for entry in 0..4 {
+                        followed.now.place[entry] = q[entry];
+                    }
+                    followed.follow(Kind::Orientation, w, dw);
+                }
+                goes_on
+            }
+        };
+        if !goes_on {
+            followed.join(level, target, kinematics, interval_s);
+        }
+        self.joining.insert_if(slot, followed.decay.lasts());
+    }
+
+    /// The part of [`Followed::update`] that is about the posture, behind the levels.
+    #[inline(always)]
+    pub(crate) fn follow_posture(
+        &mut self,
+        wanted: &JointVector<T>,
+        q: &JointVector<T>,
+        interval_s: T,
+    ) {
+        self.posture.advance(wanted, q, interval_s, self.at_once);
+        self.joining.insert_if(POSTURE_BIT, self.posture.joins());
         self.at_once = false;
+    }
+
+    /// What the slot of a level remembers.
+    pub(crate) fn visit_level(&mut self, level: &Level<T>, cells: &mut impl Cells<T>) {
+        if let Some(followed) = self.levels.get_mut(level.slot) {
+            followed.visit(&level.tracked, cells);
+        }
+    }
+
+    /// What is told of all.
+    pub(crate) fn visit_joining(&mut self, cells: &mut impl Cells<T>) {
+        cells.set("joining", &mut self.joining);
+    }
+
+    /// What the posture remembers.
+    pub(crate) fn visit_posture(&mut self, cells: &mut impl Cells<T>) {
+        self.posture.visit(cells);
+        cells.flag("at_once", &mut self.at_once);
     }
 
     /// What the level of a slot follows is forgotten.

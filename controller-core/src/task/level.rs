@@ -8,6 +8,7 @@ use super::set::{AfterStale, Task, TaskGains, TaskSet, Tracked};
 use super::{Axes, Target};
 use crate::arm::kinematics::{Kinematics, PointMotion};
 use crate::arm::{ArmModel, Link, LinkFrame};
+use crate::cells::Cells;
 use crate::joint::{Matrix3, Vector3, in_turn, zeros};
 use crate::ranges::{GIVE_BELOW, MAX_LEVELS, ORIENTATION_LENGTH, REACH_MARGIN_M};
 use crate::real::Real;
@@ -165,6 +166,15 @@ impl<T: Real> Level<T> {
         self.gains = *gains;
         self.row_damping = by_rows(&gains.damping, self.axes);
         self.filters = LevelFilters::new(&thresholds, gains, self.axes, self.length);
+    }
+
+    /// Gains and limits.
+    pub fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("stiffness", self.gains.stiffness.as_mut_slice());
+        cells.numbers("damping", self.gains.damping.as_mut_slice());
+        self.row_damping = by_rows(&self.gains.damping, self.axes);
+        self.filters.visit(cells);
+        cells.numbers("reach", core::slice::from_mut(&mut self.reach));
     }
 
     /// Whether another level tracks the same along the same axes.

@@ -71,10 +71,10 @@ pub fn of_rotation<T: Real>(r: &Matrix3<T>) -> Quaternion<T> {
     let mut largest = T::ZERO;
     for (i, candidate) in candidates.iter().enumerate() {
         let divisor = candidate[i];
-        if divisor > largest {
-            largest = divisor;
-            best = *candidate;
+        for (best, &entry) in best.iter_mut().zip(candidate) {
+            *best = largest.choose_below(divisor, entry, *best);
         }
+        largest = largest.choose_below(divisor, divisor, largest);
     }
     // The largest divisor is four times the square of the largest component, at least 1.
     Quaternion::from(best) * (T::HALF / largest.most(T::HALF).square_root())

@@ -243,7 +243,7 @@ impl TaskSet {
     }
 
     /// Number of tasks in force at first.
-    pub(crate) fn count_in_force(&self) -> usize {
+    pub fn count_in_force(&self) -> usize {
         (0..MAX_LEVELS)
             .filter(|&slot| self.is_in_force(slot))
             .count()

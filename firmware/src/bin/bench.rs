@@ -5,9 +5,11 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 use controller_core::{ConfigError, Controller, Measurement, Reference, Step};
+use firmware::comparison;
 use firmware::scenario::{self, FixedScenario};
-use firmware::stages::{Rig, Survey};
+use firmware::stages::{Clock, Rig, Survey};
 use firmware::workload;
+use frozen::FrozenCycle;
 
 #[cfg(not(target_os = "none"))]
 use std::println as say;
@@ -37,6 +39,58 @@ macro_rules! measured {
 measured!(f64, build_f64, cycle_f64);
 measured!(f32, build_f32, cycle_f32);
 
+/// A frozen cycle behind a call.
+macro_rules! frozen_cycle {
+    ($name:ident, $cycle:ident) => {
+        #[inline(never)]
+        fn $name(
+            cycle: &mut frozen::$cycle,
+            input: &<frozen::$cycle as FrozenCycle>::Input,
+        ) -> <frozen::$cycle as FrozenCycle>::Output {
+            cycle.run(input)
+        }
+    };
+}
+
+frozen_cycle!(frozen_two_level_f64, TwoLevelF64);
+frozen_cycle!(frozen_two_level_f32, TwoLevelF32);
+frozen_cycle!(frozen_case_1_f64, Case1F64);
+frozen_cycle!(frozen_case_1_f32, Case1F32);
+
+/// All frozen cycles beside the generic ones. Whether all results are equal.
+fn compare_frozen(clock: &impl Clock) -> bool {
+    use FixedScenario::{Case1, TwoLevel};
+    compare(clock, TwoLevel, "f64", build_f64, frozen_two_level_f64)
+        & compare(clock, TwoLevel, "f32", build_f32, frozen_two_level_f32)
+        & compare(clock, Case1, "f64", build_f64, frozen_case_1_f64)
+        & compare(clock, Case1, "f32", build_f32, frozen_case_1_f32)
+}
+
+fn compare<F: FrozenCycle>(
+    clock: &impl Clock,
+    scenario: FixedScenario,
+    precision: &str,
+    build: fn(FixedScenario) -> Result<Controller<F::Number>, ConfigError>,
+    run: fn(&mut F, &F::Input) -> F::Output,
+) -> bool {
+    let Ok(controller) = build(scenario) else {
+        return false;
+    };
+    let mut cycle = F::NEW;
+    let found = comparison::compare(&controller, &mut cycle, clock, run);
+    say!(
+        "frozen {} {} idle {} {} longest {} differing {} faults {}",
+        scenario.name(),
+        precision,
+        found.idle.min,
+        found.idle.max,
+        found.all.max,
+        found.differing,
+        found.faults
+    );
+    found.differing == 0
+}
+
 fn print_inputs(name: &str, precision: &str, survey: &Survey) {
     say!(
         "inputs {} {} {} faults {} saturated {} released {} checksum {:016x}",
@@ -52,7 +106,7 @@ fn print_inputs(name: &str, precision: &str, survey: &Survey) {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    use firmware::stages::{Clock, survey};
+    use firmware::stages::survey;
 
     /// The host counts nothing.
     struct Still;
@@ -74,6 +128,7 @@ fn main() {
             print_inputs(scenario.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
         }
     }
+    compare_frozen(&Still);
 }
 
 #[cfg(target_os = "none")]
@@ -87,7 +142,7 @@ mod target {
     use cortex_m_rt::entry;
     use firmware::log::Number;
     use firmware::mps2::{self, Counter, high_water, instructions};
-    use firmware::stages::{Clock, Extremes, overhead, survey};
+    use firmware::stages::{Extremes, overhead, survey};
     use firmware::workload::Kind;
 
     use super::*;
@@ -118,6 +173,7 @@ mod target {
             complete &= measure(scenario, &board, build_f64, cycle_f64);
             complete &= measure(scenario, &board, build_f32, cycle_f32);
         }
+        complete &= compare_frozen(&board);
         sizes::<f64>();
         sizes::<f32>();
         mps2::exit(complete)

@@ -13,6 +13,7 @@
 //! they contradict each other each gives way to the other.
 
 use crate::arm::{ArmModel, JointLimits};
+use crate::cells::Cells;
 use crate::joint::{DOF, JointState, JointVector, in_turn, zeros};
 use crate::real::Real;
 
@@ -73,6 +74,24 @@ impl<T: Real> JointBounds<T> {
         bounds
     }
 
+    /// Its numbers.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        let [low, high] = &mut self.ends;
+        cells.numbers("low_end", low.as_mut_slice());
+        cells.numbers("high_end", high.as_mut_slice());
+        cells.numbers("greatest_speed", self.speed.as_mut_slice());
+        cells.numbers("greatest_acceleration", self.acceleration.as_mut_slice());
+        cells.numbers(
+            "inverse_acceleration",
+            self.inverse_acceleration.as_mut_slice(),
+        );
+        cells.numbers("braking", self.braking.as_mut_slice());
+        cells.numbers("speed_gain", self.speed_gain.as_mut_slice());
+        cells.numbers("turn", self.turn.as_mut_slice());
+        let gain = core::slice::from_mut(&mut self.position_gain);
+        cells.numbers("position_gain", gain);
+    }
+
     /// How far a joint at `q` \[rad\] is from the ends of its range less the margin \[rad\]: way
     /// down and way up, negative beyond.
     #[inline(always)]
@@ -89,9 +108,9 @@ impl<T: Real> JointBounds<T> {
         let (gain, near) = (self.speed_gain[joint], self.position_gain);
         let beyond = (braking + braking) * (distance - turn);
         let root = beyond.most(T::from_f64(1e-12)).square_root();
-        let linear = distance < turn + turn;
-        let allowed = if linear { near * distance } else { root };
-        let slope = if linear { near } else { braking / root };
+        let linear_below = turn + turn;
+        let allowed = distance.choose_below(linear_below, near * distance, root);
+        let slope = distance.choose_below(linear_below, near, braking / root);
         let by_range = gain * (allowed - speed) - slope * speed;
         let by_speed = gain * (self.speed[joint] - speed);
         let alpha = self.acceleration[joint];

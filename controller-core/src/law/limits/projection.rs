@@ -19,6 +19,7 @@ use super::bounds::AccelerationBounds;
 use super::spectrum::Spectrum;
 use super::tableau::{Tableau, WIDTH};
 use crate::arm::dynamics::Dynamics;
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::ranges::{DISTURBANCE_SMOOTHING, MAX_LEVELS, PIVOTS, SOFTENING_DISTURBANCE};
@@ -80,6 +81,25 @@ impl<T: Real> Projection<T> {
         }
     }
 
+    /// What it remembers and tells.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("nearest", self.acceleration.as_mut_slice());
+        cells.numbers("nearest_torque", self.torque.as_mut_slice());
+        cells.numbers("disturbance", &mut self.disturbance);
+        cells.numbers("smoothed_disturbance", &mut self.smoothed);
+        cells.numbers("limits_power", core::slice::from_mut(&mut self.power));
+        let [least, greatest] = &mut self.at_bound;
+        cells.set("at_least", least);
+        cells.set("at_greatest", greatest);
+        cells.count("pivots", &mut self.pivots);
+        cells.flag("unresolved", &mut self.unresolved);
+    }
+
+    /// Row `i` of T, its entries up to the diagonal.
+    pub(crate) fn compliance_row(&self, i: usize) -> &[T] {
+        self.search.tableau.row(i).get(..=i).unwrap_or(&[])
+    }
+
     /// No disturbance is remembered.
     pub(crate) fn forget(&mut self) {
         self.smoothed = [T::ZERO; MAX_LEVELS];
@@ -89,16 +109,22 @@ impl<T: Real> Projection<T> {
     #[inline]
     pub(crate) fn update(&mut self, wished: &Wished<'_, T>) {
         if wished.bounds.contain(wished.acceleration) {
-            self.acceleration = *wished.acceleration;
-            self.torque = *wished.torque;
-            self.at_bound = [IndexSet::NONE; 2];
-            (self.pivots, self.unresolved) = (0, false);
-            self.power = T::ZERO;
-            for level in wished.levels.in_order() {
-                self.disturb(level.slot, T::ZERO);
-            }
+            self.keep(wished);
         } else {
             self.project(wished);
+        }
+    }
+
+    /// The wish as it is.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, wished: &Wished<'_, T>) {
+        self.acceleration = *wished.acceleration;
+        self.torque = *wished.torque;
+        self.at_bound = [IndexSet::NONE; 2];
+        (self.pivots, self.unresolved) = (0, false);
+        self.power = T::ZERO;
+        for level in wished.levels.in_order() {
+            self.disturb(level.slot, T::ZERO);
         }
     }
 
@@ -121,8 +147,15 @@ impl<T: Real> Projection<T> {
 
     #[inline(never)]
     fn project(&mut self, wished: &Wished<'_, T>) {
-        let bounds = wished.bounds;
         self.set_compliance(wished);
+        self.find(wished);
+        self.record(wished);
+    }
+
+    /// The acceleration within the bounds that is nearest by T.
+    #[inline(always)]
+    fn find(&mut self, wished: &Wished<'_, T>) {
+        let bounds = wished.bounds;
         let search = &mut self.search;
         let mut pushed = search.start(wished.acceleration, bounds);
         self.pivots = 0;
@@ -142,12 +175,11 @@ impl<T: Real> Projection<T> {
             self.acceleration[i] = cut;
         }
         self.unresolved = !within;
-        self.record(wished);
     }
 
     /// T.
     #[inline(always)]
-    fn set_compliance(&mut self, wished: &Wished<'_, T>) {
+    pub(crate) fn set_compliance(&mut self, wished: &Wished<'_, T>) {
         let cholesky = &wished.dynamics.cholesky;
         let tableau = &mut self.search.tableau;
         tableau.set_inverse(cholesky);
@@ -167,7 +199,7 @@ impl<T: Real> Projection<T> {
 
     /// What the difference to the wish does.
     #[inline(always)]
-    fn record(&mut self, wished: &Wished<'_, T>) {
+    pub(crate) fn record(&mut self, wished: &Wished<'_, T>) {
         let difference = self.acceleration - wished.acceleration;
         let torque = wished.dynamics.mass_matrix * difference;
         self.torque = wished.torque + torque;

@@ -13,6 +13,7 @@
 //! h, the activation of the level: where it comes or goes the levels below get the rest.
 
 use super::eigen::Eigen;
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::linalg::Cholesky;
@@ -148,7 +149,7 @@ impl<T: Real> Spectrum<T> {
             direction.mobility = z;
             direction.column = eigen.column(k);
             [direction.drive, direction.keep] = filters.of(z);
-            least = if z < least { z } else { least };
+            least = z.least(least);
         }
         let mut release = filters.release(least);
         if level.activation < T::ONE {
@@ -160,6 +161,14 @@ impl<T: Real> Spectrum<T> {
         self.degraded.insert_if(level.slot, degraded);
         self.released.insert_if(level.slot, released);
         self.release = self.release.most(release);
+    }
+
+    /// What is told of the directions, and by which the next stages go.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.set("degraded", &mut self.degraded);
+        cells.set("released", &mut self.released);
+        cells.flag("limits_commands", &mut self.limits_commands);
+        cells.flag("shares", &mut self.shares);
     }
 
     /// How near each direction is to have a limit of its command, at 1; 0 behind the last one.

@@ -17,6 +17,7 @@ use super::motion::WhitenedMotion;
 use super::spectrum::Spectrum;
 use crate::arm::dynamics::Dynamics;
 use crate::arm::kinematics::Kinematics;
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, Matrix3, Vector3, in_turn, zeros};
 use crate::ranges::{
@@ -110,6 +111,15 @@ impl<T: Real> WayOut<T> {
         self.is_begun
     }
 
+    /// What it remembers and tells.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("bend", self.acceleration.as_mut_slice());
+        cells.numbers("bend_whitened", self.whitened.as_mut_slice());
+        cells.numbers("bend_motion", self.motion.as_mut_slice());
+        cells.flag("bends", &mut self.is_begun);
+        cells.set("stuck", &mut self.stuck);
+    }
+
     /// Nothing where no level is released.
     #[inline]
     pub(crate) fn update(&mut self, arm: &Straight<'_, T>) {
@@ -158,9 +168,8 @@ impl<T: Real> WayOut<T> {
         let motion = self.in_null_space(arm);
         let mut fastest = T::from_f64(1e-30);
         for &speed in motion.iter() {
-            if speed.magnitude() > fastest.magnitude() {
-                fastest = speed;
-            }
+            let size = fastest.magnitude();
+            fastest = size.choose_below(speed.magnitude(), speed, fastest);
         }
         let inverse = T::ONE / fastest;
         self.motion *= inverse;
@@ -239,12 +248,13 @@ fn lost_error<T: Real>(level: &Level<T>, rows: &TaskRows<T>, spectrum: &Spectrum
     for direction in directions.iter().take(3) {
         let mut released = level.filters.release(direction.mobility);
         // What levels above take from a direction is no straight arm: its row may have more.
-        if level.start > 0 && released > T::ZERO {
+        if level.start > 0 {
             let mut row: JointVector<T> = zeros();
             for (other, &entry) in directions.iter().zip(&direction.column) {
                 row += other.row * entry;
             }
-            released = level.filters.release(row.dot(&row));
+            let of_row = level.filters.release(row.dot(&row));
+            released = T::ZERO.choose_below(released, of_row, released);
         }
         direction.add_part(direction.part(&error) * released, &mut lost);
     }
@@ -331,19 +341,17 @@ fn side_of<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>, bent: T) -> 
     let (mut wanted, mut weight) = (T::ZERO, T::ZERO);
     for i in in_turn::<DOF>(DOF) {
         let speed = motion[i];
-        if speed.magnitude() > little {
-            let straight = arm.q[i] - bent * speed;
-            let [down, up] = arm.bounds.room(i, straight);
-            let (behind, before) = if speed > T::ZERO {
-                (down, up)
-            } else {
-                (up, down)
-            };
-            back = (behind / speed.magnitude()).least(back);
-            ahead = (before / speed.magnitude()).least(ahead);
-            wanted += (arm.posture[i] - straight) * speed;
-            weight += speed * speed;
-        }
+        // Of joints that hardly move nothing counts.
+        let size = speed.magnitude();
+        let straight = arm.q[i] - bent * speed;
+        let [down, up] = arm.bounds.room(i, straight);
+        let behind = T::ZERO.choose_below(speed, down, up) / size;
+        let before = T::ZERO.choose_below(speed, up, down) / size;
+        let moves = |counted: T, else_: T| little.choose_below(size, counted, else_);
+        back = moves(behind.least(back), back);
+        ahead = moves(before.least(ahead), ahead);
+        wanted += moves((arm.posture[i] - straight) * speed, T::ZERO);
+        weight += moves(speed * speed, T::ZERO);
     }
     let least = T::from_f64(BEND_ROOM_MIN);
     match (back >= least, ahead >= least) {
@@ -353,11 +361,8 @@ fn side_of<T: Real>(arm: &Straight<'_, T>, motion: &JointVector<T>, bent: T) -> 
         (true, true) => {
             let near = T::from_f64(1.0 / BEND_TOWARDS);
             let wanted = (wanted / weight * near).most(-one).least(one);
-            let roomier = if back > ahead + T::from_f64(BEND_TOWARDS) {
-                -one
-            } else {
-                one
-            };
+            let as_much = ahead + T::from_f64(BEND_TOWARDS);
+            let roomier = as_much.choose_below(back, -one, one);
             let preferred = wanted + (one - wanted.magnitude()) * roomier;
             let bent = bent * T::from_f64(1.0 / BEND_PREFERRED);
             Some((preferred + bent).most(-one).least(one))

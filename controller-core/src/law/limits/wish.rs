@@ -18,6 +18,7 @@ use super::motion::WhitenedMotion;
 use super::spectrum::{Spectrum, left_by};
 use super::way_out::WayOut;
 use crate::arm::dynamics::Dynamics;
+use crate::cells::Cells;
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::ranges::{MAX_LEVELS, MAX_ROWS, RELEASE_DAMPING};
@@ -110,45 +111,77 @@ impl<T: Real> Wish<T> {
         }
     }
 
+    /// What is asked for so far, and what is told of it.
+    pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.numbers("wish", self.acceleration.as_mut_slice());
+        cells.numbers("wish_torque", self.torque.as_mut_slice());
+        cells.numbers("wish_whitened", self.whitened.as_mut_slice());
+        cells.numbers("wish_residual", self.residual.as_mut_slice());
+        cells.numbers("wish_rows", &mut self.of_rows);
+        cells.numbers("level_share", &mut self.level_share);
+        cells.numbers("null_share", core::slice::from_mut(&mut self.null_share));
+        cells.numbers("leak", &mut self.leak);
+        cells.set("scaled", &mut self.scaled);
+        cells.set("shaped", &mut self.shaped);
+    }
+
     /// Level by level, then the null space. Behind a call: what it reads lies far apart.
     #[inline(never)]
     pub(crate) fn update(&mut self, ask: &Ask<'_, T>) {
-        let (dynamics, spectrum) = (ask.dynamics, ask.spectrum);
-        let cholesky = &dynamics.cholesky;
+        self.begin(ask);
+        for level in ask.levels.in_order() {
+            self.add_level(ask, level);
+        }
+        self.add_rest(ask);
+    }
+
+    /// Nothing asked for yet, nothing of the residual compensated.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, ask: &Ask<'_, T>) {
+        let dynamics = ask.dynamics;
         // C dq + g - r + L u.
         self.torque = dynamics.coriolis + dynamics.gravity - ask.residual;
-        self.residual = cholesky.solve_lower(ask.residual);
+        self.residual = dynamics.cholesky.solve_lower(ask.residual);
         (self.scaled, self.shaped) = (IndexSet::NONE, IndexSet::NONE);
         if ask.levels.in_order().is_empty() {
             (self.whitened, self.acceleration) = (zeros(), zeros());
         }
-        for level in ask.levels.in_order() {
-            let (mut command, shaped) = self.command(ask, level);
-            if spectrum.shares {
-                // Once more: of a direction that a level above has released, the share that it
-                // has been given back twice.
-                command = left_by(spectrum.above(level), &command, &mut self.parts);
-            }
-            let share = if level.start > 0 {
-                let before = self.torque + cholesky.lower_times(&self.residual);
-                self.add(ask, &command, Some(&before))
-            } else {
-                self.add(ask, &command, None)
-            };
-            let slot = level.slot.min(MAX_LEVELS - 1);
-            (self.level_share[slot], self.leak[slot]) = (share, T::ZERO);
-            self.shaped.insert_if(slot, shaped);
-            self.scaled.insert_if(slot, share < T::ONE);
-            if spectrum.shares {
-                let known = self.whitened + self.residual;
-                set_rows(&mut self.of_rows, level, spectrum, &known);
-            }
+    }
+
+    /// What a level asks for, those above it asked already.
+    #[inline(always)]
+    pub(crate) fn add_level(&mut self, ask: &Ask<'_, T>, level: &Level<T>) {
+        let spectrum = ask.spectrum;
+        let (mut command, shaped) = self.command(ask, level);
+        if spectrum.shares {
+            // Once more: of a direction that a level above has released, the share that it
+            // has been given back twice.
+            command = left_by(spectrum.above(level), &command, &mut self.parts);
         }
+        let share = if level.start > 0 {
+            let before = self.torque + ask.dynamics.cholesky.lower_times(&self.residual);
+            self.add(ask, &command, Some(&before))
+        } else {
+            self.add(ask, &command, None)
+        };
+        let slot = level.slot.min(MAX_LEVELS - 1);
+        (self.level_share[slot], self.leak[slot]) = (share, T::ZERO);
+        self.shaped.insert_if(slot, shaped);
+        self.scaled.insert_if(slot, share < T::ONE);
+        if spectrum.shares {
+            let known = self.whitened + self.residual;
+            set_rows(&mut self.of_rows, level, spectrum, &known);
+        }
+    }
+
+    /// What the null space asks for, all levels asked.
+    #[inline(always)]
+    pub(crate) fn add_rest(&mut self, ask: &Ask<'_, T>) {
         let command = self.null_command(ask);
         let before = self.torque;
         self.null_share = self.add(ask, &command, Some(&before));
         self.scaled.insert_if(MAX_LEVELS, self.null_share < T::ONE);
-        if spectrum.shares {
+        if ask.spectrum.shares {
             self.set_leaks(ask);
         }
     }

@@ -5,6 +5,7 @@ use super::super::level::{Level, LevelPoint};
 use super::super::orientation::{self, Quaternion};
 use super::super::target::Target;
 use crate::arm::kinematics::Kinematics;
+use crate::cells::Cells;
 use crate::joint::{Vector3, zeros};
 use crate::ranges::{HOLD_S, JOIN_S, JOIN_SPEED, JUMP};
 use crate::real::Real;
@@ -133,6 +134,25 @@ impl<T: Real> FollowedLevel<T> {
         goal: zeros(),
         decay: Decay::NONE,
     };
+
+    /// What it remembers, of a level that tracks `tracked`.
+    pub fn visit(&mut self, tracked: &LevelPoint<T>, cells: &mut impl Cells<T>) {
+        let kind = Kind::of(tracked);
+        let mut has_begun = self.phase != Phase::Fresh;
+        let mut holds = self.phase == Phase::Holding(kind);
+        cells.flag("has_begun", &mut has_begun);
+        cells.flag("holds", &mut holds);
+        self.phase = match (has_begun, holds) {
+            (false, _) => Phase::Fresh,
+            (true, false) => Phase::Following(kind),
+            (true, true) => Phase::Holding(kind),
+        };
+        cells.numbers("place", self.now.place.as_mut_slice());
+        cells.numbers("velocity", self.now.velocity.as_mut_slice());
+        cells.numbers("acceleration", self.now.acceleration.as_mut_slice());
+        cells.numbers("goal", self.goal.as_mut_slice());
+        self.decay.visit(cells);
+    }
 
     /// Whether it holds and rests.
     pub fn rests(&self) -> bool {

@@ -2,6 +2,7 @@
 
 use super::super::decay::Clock;
 use super::super::trajectory::quintic;
+use crate::cells::Cells;
 use crate::joint::{DOF, JointVector, zeros};
 use crate::ranges::{JOIN_S, JOIN_SPEED, POSTURE_JUMP};
 use crate::real::Real;
@@ -24,6 +25,14 @@ impl<T: Real> FollowedPosture<T> {
         from: zeros(),
         clock: Clock::ENDED,
     };
+
+    /// What it remembers.
+    pub(super) fn visit(&mut self, cells: &mut impl Cells<T>) {
+        cells.flag("posture_known", &mut self.known);
+        cells.numbers("posture", self.wanted.as_mut_slice());
+        cells.numbers("posture_from", self.from.as_mut_slice());
+        self.clock.visit(cells);
+    }
 
     /// Whether there is a difference.
     #[inline(always)]
