@@ -117,7 +117,7 @@ fn of_scenario(name: &str) -> Result<Job, String> {
         .controller_config(0)
         .map_err(|error| error.to_string())?;
     Ok((
-        *scenario.arm().parameters,
+        scenario.arm().parameters,
         config,
         scenario.name.to_string(),
     ))
