@@ -142,6 +142,9 @@ impl PlacedPush {
         plant: &PlantModel,
         state: &JointState<f64>,
     ) -> JointVector<f64> {
+        if !(self.push.from_s..=self.push.to_s).contains(&t_s) {
+            return JointVector::zeros();
+        }
         let force = self.push.force(t_s);
         if force == Vector3::zeros() {
             return JointVector::zeros();

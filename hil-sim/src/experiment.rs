@@ -6,7 +6,7 @@ use std::io;
 
 use bridge::lwr::Lwr;
 use bridge::session::SessionConfig;
-use controller_core::joint::JointState;
+use controller_core::joint::{JointState, JointVector};
 use controller_core::{Controller, ControllerConfig, Measurement, Reference, State};
 use fci::Version;
 
@@ -301,12 +301,13 @@ impl Experiment {
             contacts.take_hold(t_s, plant.model(), &truth);
             let (contact_torque, hand_force_n) = contacts.joint_torque(t_s, plant.model(), &truth);
             let mut levels = probes.levels(plant.model(), &truth, &reference);
-            let lower = decision.view.below.iter();
-            let lower = lower.map(|below| (below, &decision.torque));
-            for (level, (probe, (below, torque))) in
-                levels.iter_mut().zip(probes.0.iter().zip(lower))
-            {
-                level.leak = probe.leak(plant.model(), &truth, torque, below);
+            let below = &decision.view.below;
+            if !below.is_empty() {
+                let factor = plant.equations().factor(&JointVector::zeros());
+                let caused = below.iter().map(|torque| factor.solve(torque));
+                for (level, (probe, caused)) in levels.iter_mut().zip(probes.0.iter().zip(caused)) {
+                    level.leak = probe.leak(plant.model(), &truth, caused);
+                }
             }
             for (level, view) in levels.iter_mut().zip(&decision.view.levels) {
                 level.leak = view.leak;

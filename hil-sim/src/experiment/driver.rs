@@ -313,15 +313,15 @@ impl PositionDriver {
     ) -> Decision {
         let step = self.resolver.step(&mut self.state, measurement, reference);
         let commanded = self.way.pass(&step.q);
+        let (mass_matrix, torque) = self.model.at_rest(&measurement.q);
         let impedance = Impedance::moving(
             &JointVector::repeat(POSITION_STIFFNESS),
             &JointVector::repeat(1.0),
-            &self.model.mass_matrix(&measurement.q),
+            &mass_matrix,
             [&self.reached, &commanded],
             self.cycle_s,
         );
         self.reached = commanded;
-        let torque = self.model.gravity(&measurement.q);
         let limited = Driving { torque, impedance }.limited(motors, &self.torque_limit);
         Decision {
             fault: step.status.fault,

@@ -1,5 +1,8 @@
 //! Forward dynamics by the articulated-body algorithm (Featherstone), spatial
 //! vectors in link axes about the link's origin.
+//!
+//! It shares neither frames nor method with [`super::composite`], nor with the controller's
+//! model: what tests hold both against. No run uses it.
 
 use controller_core::joint::{DOF, JointVector, Matrix3, Vector3};
 
@@ -123,15 +126,11 @@ impl Wrench {
 }
 
 impl PlantModel {
-    /// Joint accelerations \[rad/s2\] at posture `q` \[rad\] and speed `dq`
-    /// \[rad/s\]: solves (M + diag(armature)) ddq = torque - C dq - g; rotors are in M.
-    ///
-    /// `torque` \[Nm\] is everything along +q: motor minus friction plus J^T F of
-    /// contact forces. `armature` \[kg m2\] is added to the diagonal of M: zero
-    /// or h dF/d(dq) of friction treated implicitly over a
-    /// step h.
+    /// As [`PlantModel::forward_dynamics`], by articulated bodies: joint accelerations
+    /// \[rad/s2\] at `q` \[rad\] and `dq` \[rad/s\] under `torque` \[Nm\], with `armature`
+    /// \[kg m2\] on the diagonal of M.
     #[must_use]
-    pub fn forward_dynamics(
+    pub fn articulated_bodies(
         &self,
         q: &JointVector<f64>,
         dq: &JointVector<f64>,
@@ -252,7 +251,7 @@ mod tests {
             dq: JointVector::from([w1, w2, 0.0, 0.0, 0.0, 0.0, 0.0]),
         };
         let torque = JointVector::from([0.3, -0.2, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let ddq = model.forward_dynamics(&state.q, &state.dq, &torque, &armature);
+        let ddq = model.articulated_bodies(&state.q, &state.dq, &torque, &armature);
 
         let (s2, c2) = (libm::sin(q2), libm::cos(q2));
         let m = [[3.0 + 2.0 * c2, 1.0 + c2], [1.0 + c2, 1.0]];
@@ -274,10 +273,10 @@ mod tests {
         let dq = JointVector::from([0.5, -0.3, 0.8, 1.0, -0.6, 0.2, 2.0]);
         let torque = JointVector::from([5.0, -20.0, 3.0, 10.0, 1.0, -0.5, 0.02]);
         let armature = JointVector::from([0.3, 0.1, 0.02, 0.2, 0.01, 0.05, 0.001]);
-        let with = model.forward_dynamics(&q, &dq, &torque, &armature);
+        let with = model.articulated_bodies(&q, &dq, &torque, &armature);
         // The same motion without it takes that much less torque.
         let reduced = torque - armature.component_mul(&with);
-        let without = model.forward_dynamics(&q, &dq, &reduced, &JointVector::zeros());
+        let without = model.articulated_bodies(&q, &dq, &reduced, &JointVector::zeros());
         assert!((with - without).amax() < 1e-10 * with.amax());
     }
 }

@@ -2,10 +2,11 @@
 //! springs of the robot's own.
 
 use controller_core::arm::ArmParameters;
-use controller_core::joint::{DOF, JointMatrix, JointState, JointVector};
+use controller_core::joint::{JointMatrix, JointState, JointVector};
 
 use super::actuators::Actuators;
 use super::elastic::{Elastic, Elimination};
+use super::factor::{Equations, Factor};
 use super::friction::{Friction, FrictionLaw};
 use super::impedance::Impedance;
 use super::model::PlantModel;
@@ -18,18 +19,14 @@ pub(super) struct Drive {
     pub friction: DryFriction,
     /// Unless the joints are rigid.
     pub elastic: Option<Elastic>,
-    /// The arm without gravity: at rest, its acceleration is that due to the
-    /// torque alone.
-    weightless: PlantModel,
 }
 
 impl Drive {
     /// Rigid joints without friction.
-    pub fn ideal(model: &PlantModel) -> Self {
+    pub fn ideal() -> Self {
         Self {
             friction: DryFriction::None,
             elastic: None,
-            weightless: model.weightless(),
         }
     }
 
@@ -54,15 +51,15 @@ impl Drive {
                 DryFriction::Smooth(law)
             },
             elastic: options.elasticity.then(springs),
-            ..Self::ideal(model)
         }
     }
 
     /// One step of `h` \[s\] with the torques `torque` of the motors and `pushed`
-    /// of contacts \[Nm\]. The springs of `impedance` act on the motors.
+    /// of contacts \[Nm\]. The springs of `impedance` act on the motors. `equations` are those
+    /// of the arm in `state`; they are used up.
     pub fn step(
         &mut self,
-        model: &PlantModel,
+        equations: &mut Equations,
         state: &JointState<f64>,
         h: f64,
         torque: &JointVector<f64>,
@@ -77,11 +74,12 @@ impl Drive {
             Some(elastic) => elastic.eliminate(state, h, torque, &friction),
         };
         let load = motors.torque + pushed;
-        let ddq = model.forward_dynamics(&state.q, &state.dq, &load, &motors.armature);
+        let (ddq, inverse_pivots) = equations.solve_in_place(&load, &motors.armature);
         let mut dq = state.dq + ddq * h;
         let mut speed = motors.motor_speed(&dq);
         if let DryFriction::Sticking(stiction) = &mut self.friction {
-            let links = self.weightless.response(&state.q, &motors.armature) * h;
+            // At rest and weightless, accelerations are those that torques cause.
+            let links = Factor::reduced(equations, inverse_pivots).inverse() * h;
             let response = JointMatrix::from_fn(|i, j| {
                 let own = if i == j { motors.mobility[i] } else { 0.0 };
                 own + motors.share[i] * links[(i, j)] * motors.share[j]
@@ -113,31 +111,13 @@ fn rigid(h: f64, torque: &JointVector<f64>, friction: &Friction) -> Elimination 
     }
 }
 
-impl PlantModel {
-    /// (M + diag(armature))^-1 \[rad/s2 per Nm\] at posture `q` \[rad\], by the
-    /// accelerations that unit torques cause. For a weightless arm.
-    pub(crate) fn response(
-        &self,
-        q: &JointVector<f64>,
-        armature: &JointVector<f64>,
-    ) -> JointMatrix<f64> {
-        let rest = JointVector::zeros();
-        let mut response = JointMatrix::zeros();
-        for i in 0..DOF {
-            let mut unit = JointVector::zeros();
-            unit[i] = 1.0;
-            response.set_column(i, &self.forward_dynamics(q, &rest, &unit, armature));
-        }
-        response
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::noise::{Rng, stream};
     use super::super::stiction::BREAK_AWAY;
     use super::*;
     use arms::LWR_IV;
+    use controller_core::joint::DOF;
 
     const H: f64 = 0.25e-3;
     const POSTURE: [f64; DOF] = [0.2, 0.6, -0.3, -1.4, 0.4, 0.9, 0.1];
@@ -163,6 +143,18 @@ mod tests {
         }
     }
 
+    /// One step without contacts and springs of the robot.
+    fn step(
+        drive: &mut Drive,
+        model: &PlantModel,
+        state: &JointState<f64>,
+        h: f64,
+        torque: &JointVector<f64>,
+    ) -> JointState<f64> {
+        let mut equations = model.equations(&state.q, &state.dq);
+        drive.step(&mut equations, state, h, torque, &Impedance::NONE, &NONE)
+    }
+
     /// One number in -1 to 1 per joint.
     fn random(rng: &mut Rng) -> JointVector<f64> {
         JointVector::from_fn(|_, _| 2.0 * rng.uniform() - 1.0)
@@ -181,7 +173,7 @@ mod tests {
             for _ in 0..2000 {
                 // Another torque every step, up to 1 % from the level.
                 let push = random(&mut rng).component_mul(&law().coulomb) * (0.99 * BREAK_AWAY);
-                state = drive.step(&model, &state, H, &(weight + push), &Impedance::NONE, &NONE);
+                state = step(&mut drive, &model, &state, H, &(weight + push));
                 match (&drive.elastic, motors) {
                     (Some(elastic), Some(motors)) => assert_eq!(elastic.motor, motors),
                     _ => assert_eq!(state, start),
@@ -202,7 +194,7 @@ mod tests {
                 for n in 0..40 {
                     let mut torque = model.gravity_torque(&state.q);
                     torque[joint] += law().coulomb[joint] * if n == 0 { first } else { then };
-                    state = drive.step(&model, &state, H, &torque, &Impedance::NONE, &NONE);
+                    state = step(&mut drive, &model, &state, H, &torque);
                 }
                 state.dq[joint]
             };
@@ -228,7 +220,7 @@ mod tests {
             let (mut drive, mut state) = (drive(&model, POSTURE, true, false), state);
             let mut steps = 0;
             while state.dq[6] != 0.0 {
-                state = drive.step(&model, &state, h, &NONE, &Impedance::NONE, &NONE);
+                state = step(&mut drive, &model, &state, h, &NONE);
                 steps += 1;
                 assert_eq!(state.dq.rows(0, 6).amax(), 0.0);
             }
@@ -257,7 +249,7 @@ mod tests {
                     });
                     let back = (state.q - JointVector::from(posture)) * 0.5;
                     let torque = model.gravity_torque(&state.q) + sway - back;
-                    state = drive.step(&model, &state, H, &torque, &Impedance::NONE, &NONE);
+                    state = step(&mut drive, &model, &state, H, &torque);
                     let DryFriction::Sticking(stiction) = &drive.friction else {
                         panic!("on");
                     };
@@ -300,7 +292,7 @@ mod tests {
                 let start = energy(&model, &drive, &state);
                 let (mut last, mut rise) = (start, 0.0f64);
                 for _ in 0..8000 {
-                    state = drive.step(&model, &state, H, &NONE, &Impedance::NONE, &NONE);
+                    state = step(&mut drive, &model, &state, H, &NONE);
                     let now = energy(&model, &drive, &state);
                     rise = rise.max((now - last) / start);
                     last = now;
@@ -339,7 +331,7 @@ mod tests {
             let (mut crossings, mut last) = (Vec::new(), drawn(&drive, &state));
             let mut n = 0;
             while crossings.len() < 11 {
-                state = drive.step(&model, &state, h, &NONE, &Impedance::NONE, &NONE);
+                state = step(&mut drive, &model, &state, h, &NONE);
                 let now = drawn(&drive, &state);
                 if now * last <= 0.0 {
                     crossings.push((f64::from(n) + last / (last - now)) * h);
@@ -379,14 +371,7 @@ mod tests {
             elastic.motor.q = JointVector::from(POSTURE) + load.component_div(&elastic.stiffness);
             let mut state = at_rest(POSTURE);
             for n in 0..2000 {
-                state = drive.step(
-                    &model,
-                    &state,
-                    H,
-                    &torque(f64::from(n) * H),
-                    &Impedance::NONE,
-                    &NONE,
-                );
+                state = step(&mut drive, &model, &state, H, &torque(f64::from(n) * H));
             }
             (state.q - rigid.q).amax()
         };

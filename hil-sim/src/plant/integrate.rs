@@ -3,6 +3,7 @@
 use controller_core::joint::{JointState, JointVector};
 
 use super::drive::Drive;
+use super::factor::Equations;
 use super::impedance::Impedance;
 use super::model::PlantModel;
 
@@ -22,6 +23,20 @@ pub(super) struct Span {
     pub t_s: f64,
     pub cycle_s: f64,
     pub substeps: u32,
+}
+
+/// Where a cycle starts.
+pub(super) struct Start<'a> {
+    pub state: &'a JointState<f64>,
+    /// Equations of motion in this state, where they are there.
+    pub equations: Option<Equations>,
+}
+
+impl<'a> From<&'a JointState<f64>> for Start<'a> {
+    fn from(state: &'a JointState<f64>) -> Self {
+        let equations = None;
+        Self { state, equations }
+    }
 }
 
 impl Span {
@@ -51,18 +66,22 @@ fn steps_within(cycle_s: f64, longest: f64) -> u32 {
 /// `contact(t, state)` is the joint torque +J^T F \[Nm\].
 pub(super) fn explicit(
     model: &PlantModel,
-    start: &JointState<f64>,
+    start: Start<'_>,
     span: &Span,
     torque: &JointVector<f64>,
     mut contact: impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
 ) -> JointState<f64> {
     let h = span.h();
     let none = JointVector::zeros();
+    let mut known = start.equations;
     let mut acceleration = |t: f64, state: &JointState<f64>| {
         let total = torque + contact(t, state);
-        model.forward_dynamics(&state.q, &state.dq, &total, &none)
+        match known.take() {
+            Some(equations) => equations.accelerations(&total, &none),
+            None => model.forward_dynamics(&state.q, &state.dq, &total, &none),
+        }
     };
-    let mut state = *start;
+    let mut state = *start.state;
     for step in 0..span.substeps {
         let t = span.t_s + h * f64::from(step);
         // The state reached from the start of the step with given slopes.
@@ -96,19 +115,25 @@ pub(super) fn explicit(
 pub(super) fn implicit(
     model: &PlantModel,
     drive: &mut Drive,
-    start: &JointState<f64>,
+    start: Start<'_>,
     span: &Span,
     torque: &JointVector<f64>,
     impedance: &Impedance,
     mut contact: impl FnMut(f64, &JointState<f64>) -> JointVector<f64>,
 ) -> JointState<f64> {
     let h = span.h();
-    let mut state = *start;
+    let mut state = *start.state;
+    let mut known = start.equations.is_some();
+    let mut equations = start.equations.unwrap_or(Equations::NONE);
     for step in 0..span.substeps {
         let elapsed = h * f64::from(step);
         let pushed = contact(span.t_s + elapsed, &state);
         let springs = impedance.after(elapsed);
-        state = drive.step(model, &state, h, torque, &springs, &pushed);
+        if !known {
+            model.write_equations(&state.q, &state.dq, &mut equations);
+        }
+        known = false;
+        state = drive.step(&mut equations, &state, h, torque, &springs, &pushed);
     }
     state
 }
@@ -131,7 +156,7 @@ mod tests {
         implicit(
             model,
             &mut drive,
-            state,
+            state.into(),
             span,
             torque,
             &Impedance::NONE,
@@ -185,9 +210,13 @@ mod tests {
                 cycle_s: 0.32,
                 substeps,
             };
-            explicit(&model, &start(), &span, &JointVector::zeros(), |t, _| {
-                torque(t)
-            })
+            explicit(
+                &model,
+                (&start()).into(),
+                &span,
+                &JointVector::zeros(),
+                |t, _| torque(t),
+            )
         };
         let best = end(5120);
         let error = |substeps| (end(substeps).q - best.q).amax();

@@ -1,9 +1,10 @@
 //! The plant: the simulated arm that the controller acts on.
 //!
-//! It is built from the same tables as the controller's model and shares no
-//! method with it: the controller adds up composite moments in base axes, the
-//! plant runs the articulated-body algorithm in link axes ([`model`]). An error
-//! in either shows as a disagreement instead of cancelling.
+//! It is built from the same tables as the controller's model and shares no code
+//! with it: the controller's sums give M and the Christoffel form of C, the plant's ([`model`])
+//! accelerations of links and composite inertias. Tests hold both against a third way, the
+//! articulated-body algorithm in other axes ([`PlantModel::articulated_bodies`]). An error
+//! in one of them shows as a disagreement instead of cancelling.
 //!
 //! Two kinds. `ideal` is the exact model, integrated to rounding; it shows what
 //! the control law does. `realistic` adds what a real arm adds: friction, wrong
@@ -16,8 +17,10 @@
 
 mod aba;
 pub mod actuators;
+mod composite;
 mod drive;
 pub mod elastic;
+mod factor;
 pub mod frames;
 pub mod friction;
 pub mod impedance;
@@ -26,6 +29,7 @@ pub mod mismatch;
 pub mod model;
 pub mod noise;
 mod options;
+mod segment;
 pub mod sensor;
 pub mod stiction;
 
@@ -36,8 +40,9 @@ use controller_core::joint::{JointState, JointVector};
 
 use actuators::Actuators;
 use drive::Drive;
-use integrate::Span;
+use integrate::{Span, Start};
 
+pub use factor::{Equations, Factor};
 pub use impedance::Impedance;
 pub use integrate::{IDEAL_STEP_MAX, REALISTIC_STEP_MAX, REALISTIC_SUBSTEPS};
 pub use mismatch::{mismatched, realistic, true_arm, want_of_data};
@@ -52,6 +57,8 @@ pub use sensor::Sensor;
 pub struct Plant {
     model: PlantModel,
     state: JointState<f64>,
+    /// Of the state, where they were asked for.
+    equations: Option<Equations>,
     cycle_s: f64,
     options: PlantOptions,
     dead_time: DeadTime,
@@ -125,10 +132,7 @@ impl Plant {
         let nominal = PlantModel::new(parameters);
         let dead_time = DeadTime::new(options.dead_cycles, nominal.gravity_torque(&q0));
         let (model, drive, imperfections) = match kind {
-            PlantKind::Ideal => {
-                let drive = Drive::ideal(&nominal);
-                (nominal, drive, None)
-            }
+            PlantKind::Ideal => (nominal, Drive::ideal(), None),
             PlantKind::Realistic => {
                 let mut rng = Rng::new(seed, noise::stream::MISMATCH);
                 let truth = true_arm(parameters, realistic, &mut rng);
@@ -155,6 +159,7 @@ impl Plant {
                 q: q0,
                 dq: JointVector::zeros(),
             },
+            equations: None,
             cycle_s,
             options,
             dead_time,
@@ -173,6 +178,14 @@ impl Plant {
     #[must_use]
     pub fn state(&self) -> &JointState<f64> {
         &self.state
+    }
+
+    /// Equations of motion in the true state, which the next [`Plant::advance`] starts from
+    /// without making them again.
+    pub fn equations(&mut self) -> &Equations {
+        let JointState { q, dq } = &self.state;
+        self.equations
+            .get_or_insert_with(|| self.model.equations(q, dq))
     }
 
     /// Angles \[rad\] and speeds \[rad/s\] of the motors behind their gears, if the
@@ -234,7 +247,11 @@ impl Plant {
                 *torque += deviation * imperfections.torque_noise.gaussian();
             }
         }
-        let (model, start, cycle_s) = (&self.model, &self.state, self.cycle_s);
+        let (model, cycle_s) = (&self.model, self.cycle_s);
+        let start = Start {
+            state: &self.state,
+            equations: self.equations.take(),
+        };
         let contact = |t: f64, state: &JointState<f64>| external(t, model, state);
         let span = |reference| Span {
             t_s,

@@ -13,10 +13,14 @@ use controller_core::arm::{ArmParameters, LinkParameters};
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
 use controller_core::real::Real;
 
+use super::segment::Segment;
+
 /// Equations of motion of one arm, M ddq + C dq + g = torque, from its tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantModel {
     pub(super) links: [Body; DOF],
+    /// The same links for [`PlantModel::equations`].
+    pub(super) segments: [Segment; DOF],
     /// Gravitational acceleration \[m/s2\], base-plate axes.
     gravity: Vector3<f64>,
     /// The same in axes of frame 0.
@@ -88,10 +92,20 @@ impl Body {
         }
     }
 
-    /// Of the DH angle.
+    /// a \[m\], d \[m\], sine and cosine of alpha.
+    pub fn way(&self) -> (f64, f64, f64, f64) {
+        (self.a, self.d, self.sin_alpha, self.cos_alpha)
+    }
+
+    /// DH angle \[rad\].
+    #[inline]
+    pub fn dh_angle(&self, q: f64) -> f64 {
+        q - self.zero_angle
+    }
+
     #[inline]
     fn sine_cosine(&self, q: f64) -> (f64, f64) {
-        (q - self.zero_angle).sine_cosine()
+        self.dh_angle(q).sine_cosine()
     }
 
     /// R: takes link axes to those of the previous link.
@@ -159,8 +173,10 @@ impl PlantModel {
         // nalgebra takes columns.
         let base_rotation = Matrix3::from(parameters.base.rotation).transpose();
         let gravity = Vector3::from(parameters.gravity);
+        let links = parameters.links.map(|link| Body::new(&link));
         Self {
-            links: parameters.links.map(|link| Body::new(&link)),
+            segments: Segment::of(&links),
+            links,
             gravity,
             base_gravity: base_rotation.tr_mul(&gravity),
             base_rotation,

@@ -132,11 +132,12 @@ impl<B: ControlBox> Robot<B> {
         let contact = self.typed.iter().fold(scripted, |sum, push| {
             sum + push.torque(robot_t, model, &truth)
         });
+        let (mass_matrix, gravity) = self.model.at_rest(&measured.q);
         let seen = Seen {
             truth,
             measured,
-            mass_matrix: self.model.mass_matrix(&measured.q),
-            gravity: self.model.gravity(&measured.q),
+            mass_matrix,
+            gravity,
             contact,
             hand_force_n,
         };

@@ -94,7 +94,7 @@ impl<B: ControlBox> Robot<B> {
 
         let mut explicit = driving.torque + seen.gravity;
         if self.control_box.adds_coriolis() {
-            explicit += self.model.coriolis(&seen.measured, &seen.mass_matrix);
+            explicit += self.model.coriolis(&seen.measured);
         }
         let whole = Driving {
             torque: explicit,

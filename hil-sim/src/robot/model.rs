@@ -40,29 +40,17 @@ impl RobotModel {
         self.arm.gravity_torque(q)
     }
 
-    /// M(q) \[kg m2\], from the accelerations that unit torques cause.
+    /// M(q) \[kg m2\] and g(q) \[Nm\].
     #[must_use]
-    pub fn mass_matrix(&self, q: &JointVector<f64>) -> JointMatrix<f64> {
-        let response = self.weightless.response(q, &JointVector::zeros());
-        // Symmetric but for rounding; positive definite as bodies have mass.
-        let symmetric = (response + response.transpose()) * 0.5;
-        symmetric
-            .cholesky()
-            .map_or_else(JointMatrix::identity, |factor| factor.inverse())
+    pub fn at_rest(&self, q: &JointVector<f64>) -> (JointMatrix<f64>, JointVector<f64>) {
+        let equations = self.arm.equations(q, &JointVector::zeros());
+        (equations.mass_matrix(), equations.bias())
     }
 
-    /// C dq \[Nm\], from the acceleration of a weightless arm without torque.
+    /// C dq \[Nm\], of a weightless arm.
     #[must_use]
-    pub fn coriolis(
-        &self,
-        state: &JointState<f64>,
-        mass_matrix: &JointMatrix<f64>,
-    ) -> JointVector<f64> {
-        let none = JointVector::zeros();
-        let free = self
-            .weightless
-            .forward_dynamics(&state.q, &state.dq, &none, &none);
-        -(mass_matrix * free)
+    pub fn coriolis(&self, state: &JointState<f64>) -> JointVector<f64> {
+        self.weightless.equations(&state.q, &state.dq).bias()
     }
 
     /// Flange velocity per joint speed, base-plate axes.
@@ -128,16 +116,18 @@ mod tests {
     #[test]
     fn the_mass_matrix_gives_the_kinetic_energy() {
         let model = RobotModel::new(&LWR_IV);
-        let mass = model.mass_matrix(&STATE.q);
+        let (mass, gravity) = model.at_rest(&STATE.q);
         let energy = 0.5 * STATE.dq.dot(&(mass * STATE.dq));
         assert!((energy - model.arm.kinetic_energy(&STATE)).abs() < 1e-10);
+        // Gravity by virtual work.
+        assert!((gravity - model.gravity(&STATE.q)).amax() < 1e-12);
         // M ddq + C dq + g is the torque.
         let torque = JointVector::from([1.0, -20.0, 2.0, 9.0, 0.3, -0.2, 0.01]);
         let none = JointVector::zeros();
         let ddq = model
             .arm
-            .forward_dynamics(&STATE.q, &STATE.dq, &torque, &none);
-        let sum = mass * ddq + model.coriolis(&STATE, &mass) + model.gravity(&STATE.q);
+            .articulated_bodies(&STATE.q, &STATE.dq, &torque, &none);
+        let sum = mass * ddq + model.coriolis(&STATE) + gravity;
         assert!((sum - torque).amax() < 1e-9);
     }
 

@@ -104,18 +104,14 @@ impl LevelProbe {
         self.pick(v).map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    /// Norm of J M^-1 below \[m/s2\], M of the plant: what its acceleration loses
-    /// when `below` is taken off its torque.
+    /// Norm of J M^-1 below \[m/s2\]: what its acceleration loses when a torque `below` is taken
+    /// off the arm's, given the joint accelerations `caused` = M^-1 below \[rad/s2\] of the plant.
     pub fn leak(
         &self,
         plant: &PlantModel,
         truth: &JointState<f64>,
-        torque: &JointVector<f64>,
-        below: &JointVector<f64>,
+        caused: JointVector<f64>,
     ) -> f64 {
-        let none = JointVector::zeros();
-        let ddq = |torque| plant.forward_dynamics(&truth.q, &truth.dq, &torque, &none);
-        let caused = ddq(*torque) - ddq(torque - below);
         // J caused is the velocity of the point for joint speeds `caused`.
         let moving = JointState {
             q: truth.q,
