@@ -77,6 +77,16 @@ impl<S> Channel<S> {
         }
     }
 
+    /// How many columns it has with `axes` axes.
+    #[must_use]
+    pub fn width(&self, axes: usize) -> usize {
+        match self.columns {
+            columns if columns.contains("{joint}") || columns.contains("{row}") => DOF,
+            columns if columns.contains("{axis}") => axes,
+            _ => 1,
+        }
+    }
+
     /// A row of the table that describes the file.
     #[must_use]
     pub fn described(&self) -> String {

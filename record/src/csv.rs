@@ -1,15 +1,15 @@
 //! Channels as text: one header row, one row per sample, numbers with 17 significant
 //! digits.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use crate::channel::{Channel, Value};
+use crate::decimal;
 
 /// A row on its way.
 #[derive(Debug, Default)]
 pub struct Row {
-    text: String,
+    text: Vec<u8>,
 }
 
 impl Row {
@@ -18,7 +18,7 @@ impl Row {
         for channel in channels.iter().filter(|channel| channel.place.is_in_file()) {
             for name in channel.names(level, axes) {
                 self.separate();
-                self.text += &name;
+                self.text.extend_from_slice(name.as_bytes());
             }
         }
     }
@@ -32,19 +32,20 @@ impl Row {
 
     fn push(&mut self, value: Value) {
         self.separate();
-        // Writing to a String does not fail.
-        let _ = match value {
-            Value::Number(number) => write!(self.text, "{number:.16e}"),
-            Value::Count(count) => write!(self.text, "{count}"),
-            Value::Word(word) => self.text.write_str(&word),
-            Value::Empty => Ok(()),
-        };
+        match value {
+            Value::Number(number) => decimal::push(&mut self.text, number),
+            Value::Count(count @ 0..=9) => self.text.push(b'0' + count as u8),
+            // Writing to memory does not fail.
+            Value::Count(count) => drop(write!(self.text, "{count}")),
+            Value::Word(word) => self.text.extend_from_slice(word.as_bytes()),
+            Value::Empty => {}
+        }
     }
 
     fn separate(&mut self) {
         // An empty value at the start of a row would be no column: no record begins so.
         if !self.text.is_empty() {
-            self.text.push(',');
+            self.text.push(b',');
         }
     }
 
@@ -53,8 +54,8 @@ impl Row {
     /// # Errors
     /// Those of the writer.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
-        self.text.push('\n');
-        let written = out.write_all(self.text.as_bytes());
+        self.text.push(b'\n');
+        let written = out.write_all(&self.text);
         self.text.clear();
         written
     }

@@ -7,5 +7,6 @@
 
 pub mod channel;
 pub mod csv;
+mod decimal;
 pub mod run;
 pub mod session;

@@ -59,22 +59,18 @@ fn series<S>(channels: &[Channel<S>]) -> impl Iterator<Item = &Channel<S>> {
     drawn.filter(|channel| channel.columns != "t")
 }
 
-/// Axes of a point in series.
-fn axes() -> Vec<String> {
-    ["x", "y", "z"].map(String::from).to_vec()
-}
+/// Axes of a point in series: x, y, z.
+const AXES: usize = 3;
 
 /// Number of columns of series.
 fn width<S>(channels: &[Channel<S>]) -> usize {
-    series(channels)
-        .map(|channel| channel.names(0, &axes()).len())
-        .sum()
+    series(channels).map(|channel| channel.width(AXES)).sum()
 }
 
 /// Index of the first column of the channel with these columns.
 fn place<S>(channels: &[Channel<S>], columns: &str) -> usize {
     let before = series(channels).take_while(|channel| channel.columns != columns);
-    before.map(|channel| channel.names(0, &axes()).len()).sum()
+    before.map(|channel| channel.width(AXES)).sum()
 }
 
 /// A value in the unit that a report shows: degrees, thousandths of an error.
