@@ -105,7 +105,7 @@ pub fn main() -> ExitCode {
         None => run::comparison(),
         Some(Command::Run(options)) => options.run(),
         Some(Command::Serve(options)) => options.run(),
-        Some(Command::Paper { out }) => crate::paper::run(&out),
+        Some(Command::Paper { out }) => files::needed(&out).and_then(crate::paper::run),
         Some(Command::Study(options)) => options.run(),
         Some(Command::Model(options)) => options.run(),
         Some(Command::Gains(options)) => options.run(),

@@ -1,6 +1,7 @@
 //! The files of a run: trace, report, figures, summary.
 
 use std::io;
+use std::path::Path;
 
 use crate::output::{Draft, Folder};
 use crate::report::{self, Choices, Recording};
@@ -13,6 +14,26 @@ use record::run::Sample;
 
 /// From here on the size of trace.csv is said before a run \[GB\].
 const NOTABLE_GB: f64 = 1.0;
+
+/// Whether this is the word for no output at all; a folder of that name is `./none`.
+pub fn is_none(out: &Path) -> bool {
+    out.as_os_str() == "none"
+}
+
+/// An output folder of a command whose results are its files.
+///
+/// # Errors
+/// It is the word for none.
+pub fn needed(out: &Path) -> Result<&Path, Invalid> {
+    match is_none(out) {
+        true => Err(Invalid::new(
+            "--out",
+            "none",
+            "a folder here; none is for hil-sim run",
+        )),
+        false => Ok(out),
+    }
+}
 
 /// Says how large trace.csv will be, where that matters.
 ///

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use controller_core::Controller;
 
-use super::files::{Files, announce};
+use super::files::{Files, announce, is_none};
 use super::notes;
 use crate::controllers::{ControllerKind, TorqueLaw};
 use crate::experiment::Experiment;
@@ -26,6 +26,9 @@ use cell::terminal::{print, show};
 
 /// Size of a trace \[GB\].
 const TRACE_GB: Range<f64> = Range::above(0.0, 1e6);
+
+/// Largest trace where nothing else is said \[GB\].
+const MOST_GB: f64 = 4.0;
 
 /// Options of `run`. Choices are plain text here, so that an unknown one gets
 /// the same one-line answer as everything else.
@@ -68,13 +71,14 @@ pub struct RunOptions {
     #[arg(long, value_parser = number(CYCLE_MS),
         help = format!("Control cycle in ms, {CYCLE_MS} [default: the scenario's]"))]
     cycle_ms: Option<f64>,
-    #[arg(long, default_value = "4", value_parser = number(TRACE_GB),
-        help = format!("Largest trace.csv that may be written, in GB, {TRACE_GB}"))]
-    max_trace_gb: f64,
+    #[arg(long, value_parser = number(TRACE_GB),
+        help = format!("Largest trace.csv that may be written, in GB, {TRACE_GB} \
+            [default: {MOST_GB}]"))]
+    max_trace_gb: Option<f64>,
     #[arg(long, value_parser = number(TIME_S),
         help = format!("Also write the cycle at this time in s, {TIME_S}, as state.json for explain"))]
     state_at: Option<f64>,
-    /// Output folder [default: out/SCENARIO]
+    /// Output folder, or none: no file is written, figures and verdict are printed [default: out/SCENARIO]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -87,25 +91,51 @@ impl RunOptions {
     pub fn run(&self) -> Result<u8, Invalid> {
         let experiment = self.experiment()?;
         let command = self.command();
-        let out = self
-            .out
-            .clone()
-            .unwrap_or_else(|| Path::new("out").join(&experiment.scenario.name));
+        let out = self.folder(&experiment.scenario)?;
         let controller = experiment.controller()?;
-        announce(&experiment.scenario, self.max_trace_gb)?;
-        let state = self.state_at.map(|t_s| state_at(&experiment, t_s));
-        let state = state.transpose()?;
-        let mut folder = Folder::claim(&out)?;
-        if let Some(state) = state {
-            folder.add("state.json", &state)?;
-        }
-        interrupt::heed();
-        let summary = execute(&experiment, &controller, folder, Some(&command))?;
+        let summary = match &out {
+            None => {
+                interrupt::heed();
+                figures_only(&experiment, &controller)?
+            }
+            Some(out) => {
+                announce(&experiment.scenario, self.max_trace_gb.unwrap_or(MOST_GB))?;
+                let state = self.state_at.map(|t_s| state_at(&experiment, t_s));
+                let state = state.transpose()?;
+                let mut folder = Folder::claim(out)?;
+                if let Some(state) = state {
+                    folder.add("state.json", &state)?;
+                }
+                interrupt::heed();
+                execute(&experiment, &controller, folder, Some(&command))?
+            }
+        };
         let mut text = experiment_heading(&experiment);
         text += &table(&[&summary]);
-        text += &footer(&summary, &out);
+        text += &footer(&summary, out.as_deref());
         print(&text)?;
         Ok(summary.verdict.exit_code())
+    }
+
+    /// The output folder; none where nothing is to be written.
+    fn folder(&self, scenario: &Scenario) -> Result<Option<PathBuf>, Invalid> {
+        let Some(out) = &self.out else {
+            return Ok(Some(Path::new("out").join(&scenario.name)));
+        };
+        if !is_none(out) {
+            return Ok(Some(out.clone()));
+        }
+        let files = [
+            ("--state-at", self.state_at, "state.json"),
+            ("--max-trace-gb", self.max_trace_gb, "trace.csv"),
+        ];
+        for (option, value, file) in files {
+            if let Some(value) = value {
+                let allowed = format!("left out with --out none, which writes no {file}");
+                return Err(Invalid::new(option, value, allowed));
+            }
+        }
+        Ok(None)
     }
 
     /// The command line that repeats this run.
@@ -131,7 +161,8 @@ impl RunOptions {
         option("stiction", &self.stiction, "off");
         option("elasticity", &self.elasticity, "off");
         option("seed", &self.seed.to_string(), "1");
-        option("max-trace-gb", &self.max_trace_gb.to_string(), "4");
+        let most_gb = self.max_trace_gb.unwrap_or(MOST_GB);
+        option("max-trace-gb", &most_gb.to_string(), "4");
         for (name, value) in [("duration", self.duration), ("cycle-ms", self.cycle_ms)] {
             if let Some(value) = value {
                 option(name, &value.to_string(), "");
@@ -232,7 +263,7 @@ pub fn comparison() -> Result<u8, Invalid> {
     }
     let mut text = experiment_heading(&product);
     text += &table(&rows.iter().collect::<Vec<_>>());
-    text += &footer(&summary, &out);
+    text += &footer(&summary, Some(&out));
     text += "Only hierarchical has to pass: the others are there for comparison.\n";
     print(&text)?;
     let verdict = match interrupt::stop() {
@@ -265,6 +296,15 @@ fn execute(
     Ok(summary)
 }
 
+/// Runs an experiment of which nothing is written.
+fn figures_only(experiment: &Experiment, controller: &Controller<f64>) -> Result<Summary, Invalid> {
+    notes::tell_all(experiment, controller);
+    let mut progress = Progress::new(experiment.controller.name());
+    let summary = experiment.run(controller, |_| Ok(()), |share| progress.show(share));
+    progress.clear();
+    summary.map_err(Invalid::line)
+}
+
 fn experiment_heading(experiment: &Experiment) -> String {
     heading(
         &experiment.scenario,
@@ -286,16 +326,19 @@ pub(super) fn heading(scenario: &Scenario, plant: PlantKind, contacts: bool, see
     )
 }
 
-pub(super) fn footer(summary: &Summary, out: &Path) -> String {
+pub(super) fn footer(summary: &Summary, out: Option<&Path>) -> String {
     let reason = summary
         .reason
         .as_ref()
         .map(|reason| format!("{reason}\n"))
         .unwrap_or_default();
-    format!(
-        "\n{reason}report.html, summary.json, trace.csv and figures are in {}\n",
-        out.display()
-    )
+    match out {
+        Some(out) => format!(
+            "\n{reason}report.html, summary.json, trace.csv and figures are in {}\n",
+            out.display()
+        ),
+        None => format!("\n{reason}No file was written.\n"),
+    }
 }
 
 /// One row per run and level.

@@ -11,7 +11,7 @@ use clap::Args;
 
 use kind::Kind;
 
-use super::files::{Files, announce};
+use super::files::{Files, announce, needed};
 use super::notes;
 use super::run::{footer, heading, quoted, switch, table};
 use crate::link::{BURST, DELAY_MS, Fault, SHARE, Window};
@@ -269,7 +269,7 @@ impl ServeOptions {
             plant_options,
             options,
         } = self.setup(Kind::Fci)?;
-        let out = self.folder(&scenario);
+        let out = self.folder(&scenario)?;
         let number = self.version.unwrap_or(VERSIONS.max);
         let version = Version::from_number(number).map_err(Invalid::line)?;
         let mut fci = FciOptions::of(&scenario, version);
@@ -295,16 +295,18 @@ impl ServeOptions {
     }
 
     /// The output folder.
-    fn folder(&self, scenario: &Scenario) -> PathBuf {
+    fn folder(&self, scenario: &Scenario) -> Result<PathBuf, Invalid> {
         let own = || Path::new("out").join(format!("serve-{}", scenario.name));
-        self.out.clone().unwrap_or_else(own)
+        let out = self.out.clone().unwrap_or_else(own);
+        needed(&out)?;
+        Ok(out)
     }
 
     fn run_lwr(&self) -> Result<u8, Invalid> {
         let service = self.service()?;
         let setup = self.setup(Kind::Lwr)?;
         let scenario = setup.scenario.clone();
-        let out = self.folder(&scenario);
+        let out = self.folder(&scenario)?;
         // By the least cycle and the longest run that the protocol has it stays bounded.
         announce(&scenario, f64::INFINITY)?;
         let mut client: Box<dyn Transport> = match &service.client {
@@ -367,7 +369,7 @@ impl ServeOptions {
         let mut text = heading(scenario, setup.plant, setup.contacts, setup.seed);
         text += &table(&[summary]);
         text += line;
-        text += &footer(summary, out);
+        text += &footer(summary, Some(out));
         print(&text)?;
         Ok(summary.verdict.exit_code())
     }
