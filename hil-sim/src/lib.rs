@@ -7,7 +7,7 @@
 //!   and links are; [`contact`]: what pushes it;
 //! - [`controllers`]: the laws that are compared;
 //! - [`sample`]: what is looked at in a cycle, and why a run is ended; [`interrupt`]: by a
-//!   signal; [`metrics`], [`after_fault`] and [`summary`]: figures and verdict;
+//!   signal; [`spread`]: many runs on all processors; [`metrics`], [`after_fault`] and [`summary`]: figures and verdict;
 //! - [`robot`]: the robot controller of the FRI link; [`link`]: what may happen to datagrams;
 //! - [`experiment`]: the loop around `controller-core` with one of the laws; [`loopback`]: the
 //!   same through datagrams, robot and bridge in one process; [`explain`]: one cycle laid open;
@@ -37,6 +37,7 @@ pub mod report;
 pub mod robot;
 pub mod sample;
 pub mod serve;
+pub mod spread;
 pub mod study;
 pub mod summary;
 pub mod trace;

@@ -18,6 +18,7 @@ use std::path::Path;
 
 use crate::interrupt;
 use crate::output::Folder;
+use crate::spread;
 use crate::summary::Verdict as RunVerdict;
 use cell::invalid::Invalid;
 use cell::terminal::{print, show, tell};
@@ -35,20 +36,21 @@ pub fn run(out: &Path) -> Result<u8, Invalid> {
     let mut folder = Folder::claim(out)?;
     interrupt::heed();
     let terminal = io::stderr().is_terminal();
-    let results = Results::of(plan::all()?, |done, all| {
+    let workers = spread::processors();
+    let results = Results::of(&plan::all()?, workers, |done, all| {
         if terminal {
             show(format_args!("\r{done} of {all} runs"));
         }
     })?;
+    let evidence = stability::evidence(workers)?;
     if terminal {
         show(format_args!("\r{:30}\r", ""));
     }
     // Figures of runs that were cut short are no evidence.
-    if interrupt::stop().is_some() {
+    let (Some(results), Some(evidence)) = (results, evidence) else {
         tell("error: interrupted: nothing was written");
         return Ok(RunVerdict::Stopped.exit_code());
-    }
-    let evidence = stability::evidence()?;
+    };
     let claims = claims::all(&results, &evidence);
     let drawings = figures::all(&results, &evidence);
 

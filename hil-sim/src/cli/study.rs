@@ -2,12 +2,12 @@
 
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
-use std::thread;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use crate::interrupt;
+use crate::spread;
 use crate::study::limits::acceptance::{self, Criterion};
 use crate::study::limits::case::is_lwr;
 use crate::study::limits::jobs::{Plan, SetOutcome};
@@ -164,7 +164,6 @@ impl LimitsOptions {
             };
             sets = self.sets.iter().map(chosen).collect::<Result<_, _>>()?;
         }
-        let processors = || thread::available_parallelism().map_or(1, usize::from);
         Ok(Plan {
             arm,
             plant: PlantKind::from_name(&self.plant)?,
@@ -172,7 +171,7 @@ impl LimitsOptions {
             laws,
             sets,
             runs: self.runs,
-            jobs: self.jobs.unwrap_or_else(processors),
+            jobs: self.jobs.unwrap_or_else(spread::processors),
             from: self.from.clone(),
         })
     }

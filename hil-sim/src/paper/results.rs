@@ -1,13 +1,10 @@
 //! What the runs reached.
 
 use std::collections::BTreeMap;
-use std::num::NonZero;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use super::plan::{Family, Planned};
 use crate::report::{Recording, Run};
+use crate::spread;
 use crate::summary::Summary;
 use cell::invalid::Invalid;
 use cell::scenario::Scenario;
@@ -59,34 +56,19 @@ impl Worst {
 }
 
 impl Results {
-    /// Runs everything on all cores. `progress` is told how many of all are done.
+    /// Runs everything, `workers` runs at the same time. `progress` is told how many of all are
+    /// done. None where a signal ended it.
     ///
     /// # Errors
     /// A configuration that the core refuses: none for the built-in scenarios.
-    pub fn of(runs: Vec<Planned>, progress: impl Fn(usize, usize) + Sync) -> Result<Self, Invalid> {
-        let next = AtomicUsize::new(0);
-        let done = Mutex::new((BTreeMap::new(), None));
-        let workers = thread::available_parallelism().map_or(1, NonZero::get);
-        thread::scope(|scope| {
-            for _ in 0..workers.min(runs.len()) {
-                scope.spawn(|| {
-                    while let Some(run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        let outcome = execute(run);
-                        // A worker that panicked is reported by the scope.
-                        let Ok(mut done) = done.lock() else { return };
-                        match outcome {
-                            Ok(outcome) => {
-                                done.0.insert(outcome.id.clone(), outcome);
-                            }
-                            Err(error) => done.1 = Some(error),
-                        }
-                        progress(done.0.len(), runs.len());
-                    }
-                });
-            }
-        });
-        let (outcomes, error) = done.into_inner().unwrap_or_default();
-        error.map_or(Ok(Self(outcomes)), Err)
+    pub fn of(
+        runs: &[Planned],
+        workers: usize,
+        progress: impl Fn(usize, usize) + Sync,
+    ) -> Result<Option<Self>, Invalid> {
+        let outcomes = spread::in_order(runs, workers, progress, execute)?;
+        let named = |outcome: Outcome| (outcome.id.clone(), outcome);
+        Ok(outcomes.map(|outcomes| Self(outcomes.into_iter().map(named).collect())))
     }
 
     /// All runs, by name.

@@ -25,6 +25,7 @@ use serde::Serialize;
 
 use crate::arm_points::origins;
 use crate::plant::Plant;
+use crate::spread;
 use cell::invalid::Invalid;
 use cell::names::PlantKind;
 use cell::scenario::Scenario;
@@ -78,18 +79,22 @@ enum Kind {
     NullSpace,
 }
 
-/// All functions at all cycle times, on the first case's arm and levels.
+/// All functions at all cycle times, on the first case's arm and levels, by `workers` runs at the
+/// same time. None where a signal ended it.
 ///
 /// # Errors
 /// None for the built-in scenario.
-pub fn evidence() -> Result<Vec<Evidence>, Invalid> {
-    let mut all = Vec::new();
-    for kind in [Kind::WithResidual, Kind::Tasks, Kind::NullSpace] {
-        for cycle_ms in CYCLES_MS {
-            all.append(&mut run(kind, cycle_ms)?);
-        }
-    }
-    Ok(all)
+pub fn evidence(workers: usize) -> Result<Option<Vec<Evidence>>, Invalid> {
+    let kinds = [Kind::WithResidual, Kind::Tasks, Kind::NullSpace];
+    let runs = kinds.map(|kind| CYCLES_MS.map(|cycle_ms| (kind, cycle_ms)));
+    let progress = |_, _| ();
+    let made = spread::in_order(
+        runs.as_flattened(),
+        workers,
+        progress,
+        |&(kind, cycle_ms)| run(kind, cycle_ms),
+    )?;
+    Ok(made.map(|made| made.into_iter().flatten().collect()))
 }
 
 fn run(kind: Kind, cycle_ms: f64) -> Result<Vec<Evidence>, Invalid> {
@@ -267,7 +272,7 @@ mod tests {
     /// twice with the cycle.
     #[test]
     fn the_functions_decrease_up_to_a_sampling_term() {
-        let all = evidence().expect("built-in scenario");
+        let all = evidence(2).expect("built-in scenario").expect("no signal");
         assert_eq!(all.len(), 12);
         for e in &all {
             if e.name != "Vl" {

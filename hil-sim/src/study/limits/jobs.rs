@@ -1,8 +1,6 @@
 //! All runs of a study, on several processors.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 use cell::invalid::Invalid;
 use cell::names::PlantKind;
@@ -15,7 +13,7 @@ use super::import;
 use super::outcome::Outcome;
 use super::run::{self, Conditions, Law, Precision};
 use super::set::Set;
-use crate::interrupt;
+use crate::spread;
 
 /// What is to be run.
 #[derive(Clone, Debug)]
@@ -74,36 +72,11 @@ impl Plan {
     ) -> Result<Option<Vec<SetOutcome>>, Invalid> {
         let ground = Ground::new(&self.arm);
         let jobs = self.listed()?;
-        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let results: Mutex<Vec<Option<Result<Outcome, Invalid>>>> =
-            Mutex::new(vec![None; jobs.len()]);
-        let work = || {
-            loop {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                let Some(job) = jobs.get(index) else { return };
-                if interrupt::stop().is_some() {
-                    return;
-                }
-                let case = self.case(&ground, job);
-                let result = case.and_then(|case| self.made(&case, job));
-                if result.is_err() {
-                    next.store(jobs.len(), Ordering::Relaxed);
-                }
-                let results = results.lock();
-                results.unwrap_or_else(PoisonError::into_inner)[index] = Some(result);
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..self.jobs.max(1) {
-                scope.spawn(work);
-            }
-        });
-        let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if interrupt::stop().is_some() {
-            return Ok(None);
-        }
-        self.collected(&jobs, results).map(Some)
+        let results = spread::in_order(&jobs, self.jobs, progress, |job| {
+            let case = self.case(&ground, job)?;
+            self.made(&case, job)
+        })?;
+        Ok(results.map(|results| self.collected(&jobs, results)))
     }
 
     /// Every run.
@@ -142,11 +115,7 @@ impl Plan {
         run::run(case, &conditions)
     }
 
-    fn collected(
-        &self,
-        jobs: &[Job],
-        results: Vec<Option<Result<Outcome, Invalid>>>,
-    ) -> Result<Vec<SetOutcome>, Invalid> {
+    fn collected(&self, jobs: &[Job], results: Vec<Outcome>) -> Vec<SetOutcome> {
         let mut sets: Vec<_> = self
             .sets
             .iter()
@@ -156,10 +125,7 @@ impl Plan {
                 within_limits: Vec::new(),
             })
             .collect();
-        for (job, result) in jobs.iter().zip(results) {
-            let Some(outcome) = result.transpose()? else {
-                continue;
-            };
+        for (job, outcome) in jobs.iter().zip(results) {
             for of_set in sets.iter_mut().filter(|of_set| of_set.set == job.set) {
                 let list = match job.law {
                     Law::Exact => &mut of_set.exact,
@@ -168,6 +134,6 @@ impl Plan {
                 list.push(outcome.clone());
             }
         }
-        Ok(sets)
+        sets
     }
 }
