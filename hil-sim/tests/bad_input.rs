@@ -75,6 +75,10 @@ fn arguments() {
         "run two-level --seed",
         "run two-level --seed 1 --seed 2",
         "run two-level extra",
+        "run two-level --out none --state-at 1",
+        "run two-level --out none --max-trace-gb 4",
+        "paper --out none",
+        "serve two-level --out none",
         // 35 GB.
         "run case-1 --duration 3600 --cycle-ms 0.1",
         // No file with an end.

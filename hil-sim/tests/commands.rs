@@ -132,6 +132,31 @@ fn printed_scenarios_run_to_the_same_bytes() {
     }
 }
 
+/// Without files the same is said, but where they are, and nothing is left.
+#[test]
+fn a_run_without_files_says_the_same_and_writes_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for run in [
+        "run two-level --duration 1",
+        "run two-level --duration 1 --plant ideal --measurement link",
+        // Ended by safety, and by a limit.
+        "run two-level --controller as-printed --plant ideal",
+        "run two-level --controller no-observer --duration 7",
+    ] {
+        let none = hil_sim(folder.path(), &format!("{run} --out none"));
+        let left = fs::read_dir(folder.path()).expect("readable").count();
+        assert_eq!(left, 0, "{run}");
+        let written = tempfile::tempdir().expect("a temporary folder");
+        let with = hil_sim(written.path(), &format!("{run} --out o"));
+        assert_eq!(none.status.code(), with.status.code(), "{run}");
+        assert_eq!(none.stderr, with.stderr, "{run}");
+        let text = String::from_utf8(with.stdout).expect("text");
+        let files = "report.html, summary.json, trace.csv and figures are in o";
+        let expected = text.replace(files, "No file was written.");
+        assert_eq!(String::from_utf8(none.stdout).expect("text"), expected);
+    }
+}
+
 /// Without arguments: the three-row table, and the product passes.
 #[test]
 fn no_arguments_compare_three_controllers() {

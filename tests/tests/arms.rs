@@ -151,7 +151,7 @@ fn the_plant_agrees_with_pinocchio_on_every_arm() {
             }
             let torque = JointVector::from([5.0, -9.0, 3.0, 4.0, 1.0, -0.5, 0.1]);
             let none = JointVector::zeros();
-            let ddq = plant.forward_dynamics(&state.q, &state.dq, &torque, &none);
+            let ddq = plant.articulated_bodies(&state.q, &state.dq, &torque, &none);
             let known = JointVector::from(seen.coriolis) + JointVector::from(seen.gravity);
             let sum = mass * ddq + known - torque;
             // Rounding of accelerations of up to 1e5 rad/s2 of light wrists.

@@ -50,7 +50,7 @@ fn accelerations(sample: &Sample, torque: &Matrix) -> Matrix {
     let JointState { q, dq } = &sample.data.joints;
     let torque = JointVector::from_fn(|i, _| torque.at(i, 0));
     let plant = PlantModel::new(&LWR_IV);
-    Matrix::of(&plant.forward_dynamics(q, dq, &torque, &JointVector::zeros()))
+    Matrix::of(&plant.articulated_bodies(q, dq, &torque, &JointVector::zeros()))
 }
 
 /// Erratum 2, eq (28), eq (33), eq (39): mu_l times v needs an r x r matrix. The

@@ -36,7 +36,7 @@ fn mass_matrix_inverts_the_plants_response_to_unit_torques() {
             ..states.state()
         };
         let (_, dynamics) = evaluate(&model, &state);
-        let rest = plant.forward_dynamics(
+        let rest = plant.articulated_bodies(
             &state.q,
             &state.dq,
             &dynamics.gravity,
@@ -45,7 +45,7 @@ fn mass_matrix_inverts_the_plants_response_to_unit_torques() {
         assert!(rest.amax() < 1e-9, "gravity torque holds the plant: {rest}");
         for i in JOINTS {
             let torque = dynamics.gravity + dynamics.mass_matrix * unit(i);
-            let ddq = plant.forward_dynamics(&state.q, &state.dq, &torque, &JointVector::zeros());
+            let ddq = plant.articulated_bodies(&state.q, &state.dq, &torque, &JointVector::zeros());
             assert!(relative(&ddq, &unit(i), 1.0) < 1e-9);
         }
     }
@@ -133,7 +133,7 @@ fn plant_follows_the_cores_equation_of_motion() {
         let wanted = states.vector() * 20.0;
         let (_, dynamics) = evaluate(&model, &state);
         let torque = dynamics.mass_matrix * wanted + dynamics.coriolis + dynamics.gravity;
-        let ddq = plant.forward_dynamics(&state.q, &state.dq, &torque, &JointVector::zeros());
+        let ddq = plant.articulated_bodies(&state.q, &state.dq, &torque, &JointVector::zeros());
         assert!(
             relative(&ddq, &wanted, 1.0) < 1e-8,
             "{}",

@@ -309,7 +309,7 @@ fn the_plant_accelerates_every_resolvable_row_as_commanded() {
             demand,
             ..
         } = splits.sample(&case, 0.0).data;
-        let ddq = plant.forward_dynamics(&q, &dq, &demand.0, &JointVector::zeros());
+        let ddq = plant.articulated_bodies(&q, &dq, &demand.0, &JointVector::zeros());
         for row in 0..rows.count() {
             if hierarchy.deficient().contains(row) {
                 continue;
@@ -341,7 +341,7 @@ fn the_plants_points_accelerate_as_the_gains_say() {
             return;
         }
         let JointState { q, dq } = case.1;
-        let ddq = plant.forward_dynamics(&q, &dq, &sample.data.demand.0, &JointVector::zeros());
+        let ddq = plant.articulated_bodies(&q, &dq, &sample.data.demand.0, &JointVector::zeros());
         for (task, target) in config.tasks.tasks().iter().zip(wish.reference.targets()) {
             let (Tracked::Position(point), Target::Position { x, dx, ddx }) =
                 (task.tracked, target)
@@ -392,7 +392,7 @@ fn the_plants_null_space_is_the_wanted_spring_and_damper() {
         let JointState { q, dq } = &sample.data.joints;
         let tau_ext = States::new(case.2 ^ 3).vector() * 10.0;
         let torque = sample.data.demand.0;
-        let ddq = plant.forward_dynamics(q, dq, &(torque - tau_ext), &JointVector::zeros());
+        let ddq = plant.articulated_bodies(q, dq, &(torque - tau_ext), &JointVector::zeros());
         let oracle = Oracle::new(sample.terms());
         let (null, terms) = (&oracle.null, &oracle.terms);
         let v_dot = &null.jbar * Matrix::of(&ddq) + &null.jbar_dot * &terms.dq;

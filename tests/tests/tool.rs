@@ -210,7 +210,7 @@ fn advance(plant: &PlantModel, state: &mut JointState<f64>, torque: &JointVector
     let h = CYCLE_S / 4.0;
     let rate = |s: &JointState<f64>| JointState {
         q: s.dq,
-        dq: plant.forward_dynamics(&s.q, &s.dq, torque, &none),
+        dq: plant.articulated_bodies(&s.q, &s.dq, torque, &none),
     };
     let moved = |from: &JointState<f64>, rate: &JointState<f64>, h: f64| JointState {
         q: from.q + rate.q * h,
@@ -233,7 +233,7 @@ fn flange_acceleration(
     state: &JointState<f64>,
     torque: &JointVector<f64>,
 ) -> Vector3<f64> {
-    let ddq = plant.forward_dynamics(&state.q, &state.dq, torque, &JointVector::zeros());
+    let ddq = plant.articulated_bodies(&state.q, &state.dq, torque, &JointVector::zeros());
     // Rounding of a velocity of 0.2 m/s over 0.2 ms: 1e-12 m/s2; truncation less than 1e-6.
     let h = 1e-4;
     let velocity = |h: f64| {

@@ -196,13 +196,13 @@ impl PlantModel {
         let square = dq[0] * dq[0];
         let mut gradient = [[-square, 0.0, 0.0], [0.0, -square, 0.0], [0.0; 3]];
         let mut motion = first;
-        let mut bias = [([0.0; 3], [0.0; 3]); DOF];
-        for i in 1..DOF {
-            let from = &segments[i - 1];
+        // Of the links behind the first one.
+        let bias: [_; DOF - 1] = core::array::from_fn(|behind| {
+            let (from, i) = (&segments[behind], behind + 1);
             motion = by_way!(from.way, motion.carried(from, &gradient, angles[i])).spun(dq[i]);
             gradient = motion.gradient();
-            bias[i] = motion.inertial(&gradient, &segments[i].body);
-        }
+            motion.inertial(&gradient, &segments[i].body)
+        });
 
         let mut inward = Inward {
             group: Moments::NONE,
@@ -215,7 +215,7 @@ impl PlantModel {
                 joint => by_way!(segment.way, inward.carry(segment, angles[joint], joint)),
             }
             let Inward { group, wrenches } = &mut inward;
-            let (moment, force) = &bias[i];
+            let (moment, force) = &bias[i - 1];
             let [hx, hy, _] = group.first;
             let [sxx, _, sxz, syy, syz, _] = group.second;
             let own = [-sxz, -syz, sxx + syy];

@@ -73,13 +73,15 @@ pub(super) fn explicit(
 ) -> JointState<f64> {
     let h = span.h();
     let none = JointVector::zeros();
-    let mut known = start.equations;
+    let mut known = start.equations.is_some();
+    let mut equations = start.equations.unwrap_or(Equations::NONE);
     let mut acceleration = |t: f64, state: &JointState<f64>| {
         let total = torque + contact(t, state);
-        match known.take() {
-            Some(equations) => equations.accelerations(&total, &none),
-            None => model.forward_dynamics(&state.q, &state.dq, &total, &none),
+        if !known {
+            model.write_equations(&state.q, &state.dq, &mut equations);
         }
+        known = false;
+        equations.solve_in_place(&total, &none).0
     };
     let mut state = *start.state;
     for step in 0..span.substeps {

@@ -98,7 +98,7 @@ fn erratum_1_the_storage_function_is_dissipated_only_with_the_plus() {
             };
             let torque = resting_oracle.torque(variant);
             let torque = JointVector::from_fn(|i, _| torque.at(i, 0));
-            let ddq = plant.forward_dynamics(&q, &dq, &torque, &JointVector::zeros());
+            let ddq = plant.articulated_bodies(&q, &dq, &torque, &JointVector::zeros());
             let [ahead, behind] =
                 [STEP, -STEP].map(|t| storage(&at(q + dq * t + ddq * (t * t / 2.0), dq + ddq * t)));
             let rate = (ahead - behind) / (2.0 * STEP);
