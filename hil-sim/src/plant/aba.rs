@@ -6,7 +6,8 @@
 
 use controller_core::joint::{DOF, JointVector, Matrix3, Vector3};
 
-use super::model::{Body, PlantModel, Twist};
+use super::body::{Body, Twist};
+use super::model::PlantModel;
 
 /// An inertia that need not be a rigid body's: the force on the handle of a
 /// chain per acceleration of the handle, by 3 x 3 blocks.

@@ -17,6 +17,7 @@
 
 mod aba;
 pub mod actuators;
+mod body;
 mod composite;
 mod drive;
 pub mod elastic;

@@ -7,7 +7,7 @@
 
 use controller_core::joint::{DOF, Matrix3, Vector3};
 
-use super::model::Body;
+use super::body::Body;
 
 /// The way to the next joint frame by what it does to the axes: right angles of twist only
 /// exchange them.
@@ -91,7 +91,7 @@ impl Segment {
         // What lies on the axis of the joint behind, and is this link's: mass, h and S along it.
         let mut axial = (0.0, 0.0, 0.0);
         for (segment, link) in segments.iter_mut().zip(links).rev() {
-            let (a, d, sin_alpha, cos_alpha) = link.way();
+            let (a, d, sin_alpha, cos_alpha) = (link.a, link.d, link.sin_alpha, link.cos_alpha);
             // In the DH frame the link's own; then turned by alpha about x, shifted by
             // (a, 0, d).
             let turned = Matrix3::new(
@@ -122,7 +122,7 @@ impl Segment {
     }
 
     fn bare(link: &Body) -> Self {
-        let (a, d, sin_alpha, cos_alpha) = link.way();
+        let (a, d, sin_alpha, cos_alpha) = (link.a, link.d, link.sin_alpha, link.cos_alpha);
         let twist = match (sin_alpha, cos_alpha) {
             (0.0, 1.0) => STRAIGHT,
             (1.0, 0.0) => RIGHT,
