@@ -65,16 +65,6 @@ pub(crate) fn sines_cosines<T: Real>(
     (cut(&sines), cut(&cosines))
 }
 
-/// exp(-x) of every x >= 0.
-#[inline(always)]
-pub(crate) fn exponentials<T: Real>(x: &JointVector<T>) -> JointVector<T> {
-    let mut values = padded(x);
-    for value in &mut values {
-        *value = value.exp_negative();
-    }
-    cut(&values)
-}
-
 #[inline(always)]
 pub(crate) fn padded<T: Real>(x: &JointVector<T>) -> Padded<T> {
     let mut values = [T::ZERO; ALIKE];

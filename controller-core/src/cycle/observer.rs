@@ -16,7 +16,7 @@
 
 use crate::arm::dynamics::Dynamics;
 use crate::cells::Cells;
-use crate::joint::{DOF, JointState, JointVector, exponentials, zeros};
+use crate::joint::{DOF, JointState, JointVector, zeros};
 use crate::real::Real;
 
 /// What the observer remembers from the previous cycle.
@@ -63,11 +63,14 @@ impl<T: Real> Observer<T> {
     pub fn update(&mut self, gain: &JointVector<T>, interval_s: T, momentum: &JointVector<T>) {
         if self.started {
             let rate = T::ONE / interval_s;
-            let innovation = (momentum - self.momentum) * rate - self.input;
-            let decay = exponentials(&(gain * interval_s));
+            // Most often all joints have one gain, and what decays by the other is the same.
+            let (mut last, mut decay) = (T::ZERO, T::ONE);
             for i in 0..DOF {
-                self.residual[i] =
-                    decay[i] * self.residual[i] + (T::ONE - decay[i]) * innovation[i];
+                let innovation = (momentum[i] - self.momentum[i]) * rate - self.input[i];
+                if gain[i] != last {
+                    (last, decay) = (gain[i], (gain[i] * interval_s).exp_negative());
+                }
+                self.residual[i] = decay * self.residual[i] + (T::ONE - decay) * innovation;
             }
         }
         self.momentum = *momentum;
