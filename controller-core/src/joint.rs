@@ -39,31 +39,13 @@ pub const fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C
     SMatrix::from_array_storage(ArrayStorage([[T::ZERO; R]; C]))
 }
 
-/// Length of the loops over elementary functions of all joints. Vector units do a
-/// whole number of fours, so an eighth value is cheaper than seven; without one it
-/// would be wasted. The results are the same.
-const ALIKE: usize = if cfg!(target_arch = "arm") { DOF } else { 8 };
+/// Length of the loops over sines and cosines of all joints. Vector units do a whole number of
+/// fours, so an eighth value is cheaper than seven; without one it would be wasted. The results
+/// are the same.
+pub(crate) const ALIKE: usize = if cfg!(target_arch = "arm") { DOF } else { 8 };
 
-/// One value per joint where functions of all joints are computed, the rest 0.
+/// One value per joint where functions of all joints are computed, the rest as of an angle 0.
 pub(crate) type Padded<T> = [T; ALIKE];
-
-/// Sine and cosine of every angle q - `zero` \[rad\].
-#[inline(always)]
-pub(crate) fn sines_cosines<T: Real>(
-    q: &JointVector<T>,
-    zero: &Padded<T>,
-) -> (JointVector<T>, JointVector<T>) {
-    let mut sines = padded(q);
-    for (angle, &zero) in sines.iter_mut().zip(zero) {
-        *angle -= zero;
-    }
-    // As a copy: zeros would be cleared by a call.
-    let mut cosines = sines;
-    for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
-        (*sine, *cosine) = sine.sine_cosine();
-    }
-    (cut(&sines), cut(&cosines))
-}
 
 #[inline(always)]
 pub(crate) fn padded<T: Real>(x: &JointVector<T>) -> Padded<T> {
@@ -72,15 +54,6 @@ pub(crate) fn padded<T: Real>(x: &JointVector<T>) -> Padded<T> {
         values[i] = x[i];
     }
     values
-}
-
-#[inline(always)]
-fn cut<T: Real>(values: &Padded<T>) -> JointVector<T> {
-    let mut vector = zeros();
-    for i in 0..DOF {
-        vector[i] = values[i];
-    }
-    vector
 }
 
 /// Whether every value is finite: x - x is 0 where x is, else NaN, which no sum loses.

@@ -95,7 +95,7 @@ fn hold(arm: &ArmParameters, model: &ArmModel<f64>, states: &[Seen]) {
         let motion = kinematics.point(flange.link, &flange.offset.into());
         pose.add(relative(&motion.x, &seen.position, 1.0));
         let own = Matrix3::from(arm.flange.rotation).transpose();
-        let turned = kinematics.rotation[DOF] * own;
+        let turned = kinematics.link(Link::L7).rotation * own;
         pose.add(relative(&turned.transpose(), &seen.rotation, 1.0));
 
         let rows = kinematics.point_jacobian(flange.link, &motion);

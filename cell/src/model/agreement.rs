@@ -119,7 +119,7 @@ impl Agreement {
 /// The flange by the core's kinematics.
 fn flange(kinematics: &Kinematics<f64>, arm: &ArmParameters) -> Frame {
     let last = Frame {
-        rotation: kinematics.rotation[DOF],
+        rotation: kinematics.link(Link::L7).rotation,
         shift: kinematics.point(Link::L7, &[0.0; 3].into()).x,
     };
     last.carrying(&Frame::from(&arm.flange))

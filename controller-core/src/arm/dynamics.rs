@@ -65,8 +65,8 @@ impl<T: Real> Dynamics<T> {
         };
         let base = Motion {
             // At rest; as numbers, because arrays of constant zeros are cleared by calls.
-            spin: kinematics.angular_velocity[0].into(),
-            velocity: kinematics.origin_velocity[0].into(),
+            spin: kinematics.at_rest().into(),
+            velocity: kinematics.at_rest().into(),
             gravity: arm.gravity.into(),
         };
         let mut motion = [base; DOF];

@@ -1,10 +1,9 @@
 //! Frames, joint axes and their rates, from one pass over the chain; points on
 //! any link with position, velocity and Jacobian rows.
 
-use crate::arm::exchange::AxisExchange;
 use crate::arm::link::Link;
 use crate::arm::model::ArmModel;
-use crate::joint::{DOF, JointState, JointVector, Matrix3, Vector3, sines_cosines, zeros};
+use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, zeros};
 use crate::linalg::for_each_joint;
 use crate::real::Real;
 
@@ -13,27 +12,24 @@ const FRAMES: usize = DOF + 1;
 
 /// Where everything is and how fast it moves: base-plate frame, SI units.
 ///
-/// Index i of the arrays is DH frame i, which moves with link i (0 is fixed).
+/// What stands by rows x, y, z has one entry per DH frame; frame i moves with link i, 0 is fixed.
+/// Its z axis is that of joint i + 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinematics<T: Real> {
-    /// Axes of the joints, unit vectors (z of frame i for joint i + 1), by rows x, y, z.
-    pub axis: [JointVector<T>; 3],
-    /// Time derivatives of the axes \[1/s\], by rows x, y, z.
-    pub axis_rate: [JointVector<T>; 3],
-    /// `origin` of the frames of the joints' axes and its velocity, by rows.
-    joint_origin: [JointVector<T>; 3],
-    joint_velocity: [JointVector<T>; 3],
-    /// Orientation of frame i: its axes are the columns, in base-plate axes.
-    pub rotation: [Matrix3<T>; FRAMES],
-    /// Origin of frame i \[m\].
-    pub origin: [Vector3<T>; FRAMES],
-    /// Angular velocity of link i \[rad/s\].
-    pub angular_velocity: [Vector3<T>; FRAMES],
-    /// Velocity of the origin of frame i, carried by link i \[m/s\].
-    pub origin_velocity: [Vector3<T>; FRAMES],
+    /// z axes of the frames, unit vectors, by rows.
+    axis: [[T; FRAMES]; 3],
+    /// Time derivatives of the joints' axes \[1/s\], by rows.
+    axis_rate: [JointVector<T>; 3],
+    /// Origins of the frames \[m\] and their velocities \[m/s\], by rows.
+    origin: [[T; FRAMES]; 3],
+    velocity: [[T; FRAMES]; 3],
+    /// x and y axes of the frame of each link.
+    sides: [[Vector3<T>; 2]; DOF],
+    /// Angular velocity of each link \[rad/s\].
+    spin: [Vector3<T>; DOF],
     /// Sine and cosine of the DH angles, for the dynamics.
-    pub(crate) sine: JointVector<T>,
-    pub(crate) cosine: JointVector<T>,
+    pub(crate) sine: Padded<T>,
+    pub(crate) cosine: Padded<T>,
 }
 
 /// A point of the arm at one instant.
@@ -69,62 +65,61 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            rotation: [zeros(); FRAMES],
-            origin: [zeros(); FRAMES],
-            angular_velocity: [zeros(); FRAMES],
-            origin_velocity: [zeros(); FRAMES],
-            axis: [zeros(); 3],
+            axis: [[T::ZERO; FRAMES]; 3],
             axis_rate: [zeros(); 3],
-            joint_origin: [zeros(); 3],
-            joint_velocity: [zeros(); 3],
-            sine: zeros(),
-            cosine: zeros(),
+            origin: [[T::ZERO; FRAMES]; 3],
+            velocity: [[T::ZERO; FRAMES]; 3],
+            sides: [[zeros(); 2]; DOF],
+            spin: [zeros(); DOF],
+            sine: [T::ZERO; ALIKE],
+            cosine: [T::ZERO; ALIKE],
         }
     }
 
     /// One pass from base to flange.
     #[inline]
     pub fn update(&mut self, arm: &ArmModel<T>, joints: &JointState<T>) {
-        let zero = Vector3::from([T::ZERO; 3]);
         let k = self;
-        (k.sine, k.cosine) = sines_cosines(&joints.q, &arm.zero_angle);
+        for i in 0..DOF {
+            k.sine[i] = joints.q[i] - arm.zero_angle[i];
+        }
+        for (sine, cosine) in k.sine.iter_mut().zip(&mut k.cosine) {
+            (*sine, *cosine) = sine.sine_cosine();
+        }
         let [mut x, mut y, mut z] = arm.base_axes;
-        k.rotation[0] = Matrix3::from_columns(&[x, y, z]);
-        k.origin[0] = arm.base_shift;
-        let (mut origin, mut velocity, mut spin) = (k.origin[0], zero, zero);
+        for row in 0..3 {
+            (k.axis[row][0], k.origin[row][0]) = (z[row], arm.base_shift[row]);
+        }
+        let mut spin = Vector3::from([T::ZERO; 3]);
         for_each_joint!(i, {
             let link = &arm.links[i];
-            let (sin, cos) = (k.sine[i], k.cosine[i]);
-            // The base does not turn.
-            let axis_rate = if i == 0 { zero } else { spin.cross(&z) };
-            for row in 0..3 {
-                k.axis[row][i] = z[row];
-                k.axis_rate[row][i] = axis_rate[row];
-                k.joint_origin[row][i] = origin[row];
-                k.joint_velocity[row][i] = velocity[row];
-            }
+            let axis_rate = spin.cross(&z);
             spin += z * joints.dq[i];
+            let (sin, cos) = (k.sine[i], k.cosine[i]);
             let turned_y = y * cos - x * sin;
             x = x * cos + y * sin;
-            // The way to the next origin, most often none.
+            // From entry to entry in memory: with the axes they do not fit into registers.
+            for row in 0..3 {
+                k.axis_rate[row][i] = axis_rate[row];
+                k.origin[row][i + 1] = k.origin[row][i];
+                k.velocity[row][i + 1] = k.velocity[row][i];
+            }
             if link.a != T::ZERO || link.d != T::ZERO {
                 let shift = x * link.a + z * link.d;
-                origin += shift;
-                velocity += spin.cross(&shift);
+                let rate = spin.cross(&shift);
+                for row in 0..3 {
+                    k.origin[row][i + 1] += shift[row];
+                    k.velocity[row][i + 1] += rate[row];
+                }
             }
-            (y, z) = match AxisExchange::turn(link.exchange.0) {
-                AxisExchange::NONE => (turned_y, z),
-                AxisExchange::RIGHT => (z, -turned_y),
-                AxisExchange::LEFT => (-z, turned_y),
-                _ => (
-                    turned_y * link.cos_alpha + z * link.sin_alpha,
-                    z * link.cos_alpha - turned_y * link.sin_alpha,
-                ),
-            };
-            k.rotation[i + 1] = Matrix3::from_columns(&[x, y, z]);
-            k.origin[i + 1] = origin;
-            k.angular_velocity[i + 1] = spin;
-            k.origin_velocity[i + 1] = velocity;
+            (y, z) = (
+                turned_y * link.cos_alpha + z * link.sin_alpha,
+                z * link.cos_alpha - turned_y * link.sin_alpha,
+            );
+            for row in 0..3 {
+                k.axis[row][i + 1] = z[row];
+            }
+            (k.sides[i], k.spin[i]) = ([x, y], spin);
         });
     }
 
@@ -134,25 +129,27 @@ impl<T: Real> Kinematics<T> {
     #[inline]
     pub fn point(&self, link: Link, offset: &Vector3<T>) -> PointMotion<T> {
         let frame = link.number();
-        let lever = self.rotation[frame] * offset;
+        let LinkMotion {
+            rotation,
+            angular_velocity,
+        } = self.link(link);
+        let lever = rotation * offset;
         PointMotion {
-            x: self.origin[frame] + lever,
-            dx: self.origin_velocity[frame] + self.angular_velocity[frame].cross(&lever),
+            x: column(&self.origin, frame) + lever,
+            dx: column(&self.velocity, frame) + angular_velocity.cross(&lever),
         }
     }
 
     /// Axis of joint `i`, counted from 0: a unit vector.
     #[inline(always)]
     pub(crate) fn joint_axis(&self, i: usize) -> Vector3<T> {
-        let [x, y, z] = &self.axis;
-        Vector3::from([x[i], y[i], z[i]])
+        column(&self.axis, i)
     }
 
     /// A place on the axis of joint `i`, counted from 0 \[m\].
     #[inline(always)]
     pub(crate) fn joint_place(&self, i: usize) -> Vector3<T> {
-        let [x, y, z] = &self.joint_origin;
-        Vector3::from([x[i], y[i], z[i]])
+        column(&self.origin, i)
     }
 
     /// J and dJ/dt of a point whose motion is `motion`: columns z x (x - o) and
@@ -186,10 +183,10 @@ impl<T: Real> Kinematics<T> {
         for i in 0..DOF {
             let (z_b, z_c) = (self.axis[b][i], self.axis[c][i]);
             let (dz_b, dz_c) = (self.axis_rate[b][i], self.axis_rate[c][i]);
-            let lever_b = motion.x[b] - self.joint_origin[b][i];
-            let lever_c = motion.x[c] - self.joint_origin[c][i];
-            let lever_rate_b = motion.dx[b] - self.joint_velocity[b][i];
-            let lever_rate_c = motion.dx[c] - self.joint_velocity[c][i];
+            let lever_b = motion.x[b] - self.origin[b][i];
+            let lever_c = motion.x[c] - self.origin[c][i];
+            let lever_rate_b = motion.dx[b] - self.velocity[b][i];
+            let lever_rate_c = motion.dx[c] - self.velocity[c][i];
             row[i] = z_b * lever_c - z_c * lever_b;
             rate[i] = (dz_b * lever_c - dz_c * lever_b) + (z_b * lever_rate_c - z_c * lever_rate_b);
         }
@@ -197,11 +194,17 @@ impl<T: Real> Kinematics<T> {
         self.cut(link, rate);
     }
 
+    /// Velocity of the base: zeros that the compiler does not know, because constant ones are
+    /// written by calls.
+    #[inline(always)]
+    pub(crate) fn at_rest(&self) -> Vector3<T> {
+        column(&self.velocity, 0)
+    }
+
     /// Joints behind `link` do not move it.
     #[inline(always)]
     fn cut(&self, link: Link, row: &mut JointVector<T>) {
-        // The base does not turn; as a number, because constant zeros are written by a call.
-        let zero = self.angular_velocity[0][0];
+        let zero = self.at_rest()[0];
         for i in link.number()..DOF {
             row[i] = zero;
         }
@@ -211,10 +214,10 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     #[inline]
     pub fn link(&self, link: Link) -> LinkMotion<T> {
-        let frame = link.number();
+        let [x, y] = self.sides[link as usize];
         LinkMotion {
-            rotation: self.rotation[frame],
-            angular_velocity: self.angular_velocity[frame],
+            rotation: Matrix3::from_columns(&[x, y, column(&self.axis, link.number())]),
+            angular_velocity: self.spin[link as usize],
         }
     }
 
@@ -243,10 +246,19 @@ impl<T: Real> Kinematics<T> {
         row: &mut JointVector<T>,
         rate: &mut JointVector<T>,
     ) {
-        (*row, *rate) = (self.axis[axis % 3], self.axis_rate[axis % 3]);
+        for i in 0..DOF {
+            row[i] = self.axis[axis % 3][i];
+            rate[i] = self.axis_rate[axis % 3][i];
+        }
         self.cut(link, row);
         self.cut(link, rate);
     }
+}
+
+/// A vector by rows.
+#[inline(always)]
+fn column<T: Real, const N: usize>([x, y, z]: &[[T; N]; 3], i: usize) -> Vector3<T> {
+    Vector3::from([x[i], y[i], z[i]])
 }
 
 impl<T: Real> Default for Kinematics<T> {
