@@ -157,41 +157,30 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     #[inline]
     pub fn point_jacobian(&self, link: Link, motion: &PointMotion<T>) -> JacobianRows<T> {
-        let mut rows = JacobianRows {
-            jacobian: [zeros(); 3],
-            jacobian_dot: [zeros(); 3],
-        };
-        for axis in 0..3 {
-            let (row, rate) = (&mut rows.jacobian[axis], &mut rows.jacobian_dot[axis]);
-            self.set_point_row(axis, link, motion, row, rate);
-        }
+        let mut rows = JacobianRows::new();
+        self.set_point_rows(link, motion, &mut rows.jacobian, &mut rows.jacobian_dot);
         rows
     }
 
-    /// Row `axis`, counted from 0, of [`Kinematics::point_jacobian`].
-    #[inline(always)]
-    pub(crate) fn set_point_row(
+    /// The same in the place of the rows. Behind a call: a loop over levels would read all it needs
+    /// in advance, which does not fit into registers.
+    #[inline(never)]
+    pub(crate) fn set_point_rows(
         &self,
-        axis: usize,
         link: Link,
         motion: &PointMotion<T>,
-        row: &mut JointVector<T>,
-        rate: &mut JointVector<T>,
+        rows: &mut [JointVector<T>; 3],
+        rates: &mut [JointVector<T>; 3],
     ) {
-        // The entries that a cross product has in this row, y and z in row x.
-        let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-        for i in 0..DOF {
-            let (z_b, z_c) = (self.axis[b][i], self.axis[c][i]);
-            let (dz_b, dz_c) = (self.axis_rate[b][i], self.axis_rate[c][i]);
-            let lever_b = motion.x[b] - self.origin[b][i];
-            let lever_c = motion.x[c] - self.origin[c][i];
-            let lever_rate_b = motion.dx[b] - self.velocity[b][i];
-            let lever_rate_c = motion.dx[c] - self.velocity[c][i];
-            row[i] = z_b * lever_c - z_c * lever_b;
-            rate[i] = (dz_b * lever_c - dz_c * lever_b) + (z_b * lever_rate_c - z_c * lever_rate_b);
+        for i in 0..link.number() {
+            let (z, dz) = (self.joint_axis(i), rows_at(&self.axis_rate, i));
+            let lever = motion.x - self.joint_place(i);
+            let lever_rate = motion.dx - column(&self.velocity, i);
+            set_rows_at(rows, i, &z.cross(&lever));
+            set_rows_at(rates, i, &(dz.cross(&lever) + z.cross(&lever_rate)));
         }
-        self.cut(link, row);
-        self.cut(link, rate);
+        self.cut(link, rows);
+        self.cut(link, rates);
     }
 
     /// Velocity of the base: zeros that the compiler does not know, because constant ones are
@@ -203,10 +192,9 @@ impl<T: Real> Kinematics<T> {
 
     /// Joints behind `link` do not move it.
     #[inline(always)]
-    fn cut(&self, link: Link, row: &mut JointVector<T>) {
-        let zero = self.at_rest()[0];
+    fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3]) {
         for i in link.number()..DOF {
-            row[i] = zero;
+            set_rows_at(rows, i, &self.at_rest());
         }
     }
 
@@ -226,33 +214,55 @@ impl<T: Real> Kinematics<T> {
     #[must_use]
     #[inline]
     pub fn angular_jacobian(&self, link: Link) -> JacobianRows<T> {
-        let mut rows = JacobianRows {
-            jacobian: [zeros(); 3],
-            jacobian_dot: [zeros(); 3],
-        };
-        for axis in 0..3 {
-            let (row, rate) = (&mut rows.jacobian[axis], &mut rows.jacobian_dot[axis]);
-            self.set_angular_row(axis, link, row, rate);
-        }
+        let mut rows = JacobianRows::new();
+        self.set_angular_rows(link, &mut rows.jacobian, &mut rows.jacobian_dot);
         rows
     }
 
-    /// Row `axis`, counted from 0, of [`Kinematics::angular_jacobian`].
-    #[inline(always)]
-    pub(crate) fn set_angular_row(
+    /// The same in the place of the rows, likewise.
+    #[inline(never)]
+    pub(crate) fn set_angular_rows(
         &self,
-        axis: usize,
         link: Link,
-        row: &mut JointVector<T>,
-        rate: &mut JointVector<T>,
+        rows: &mut [JointVector<T>; 3],
+        rates: &mut [JointVector<T>; 3],
     ) {
-        for i in 0..DOF {
-            row[i] = self.axis[axis % 3][i];
-            rate[i] = self.axis_rate[axis % 3][i];
+        for i in 0..link.number() {
+            set_rows_at(rows, i, &self.joint_axis(i));
+            set_rows_at(rates, i, &rows_at(&self.axis_rate, i));
         }
-        self.cut(link, row);
-        self.cut(link, rate);
+        self.cut(link, rows);
+        self.cut(link, rates);
     }
+}
+
+impl<T: Real> JacobianRows<T> {
+    /// Nothing set yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            jacobian: [zeros(); 3],
+            jacobian_dot: [zeros(); 3],
+        }
+    }
+}
+
+impl<T: Real> Default for JacobianRows<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Column `i` of rows.
+#[inline(always)]
+fn rows_at<T: Real>([x, y, z]: &[JointVector<T>; 3], i: usize) -> Vector3<T> {
+    Vector3::from([x[i], y[i], z[i]])
+}
+
+/// Sets column `i` of rows.
+#[inline(always)]
+fn set_rows_at<T: Real>([x, y, z]: &mut [JointVector<T>; 3], i: usize, column: &Vector3<T>) {
+    (x[i], y[i], z[i]) = (column.x, column.y, column.z);
 }
 
 /// A vector by rows.

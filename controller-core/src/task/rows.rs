@@ -3,7 +3,7 @@
 use super::followed::{Followed, Motion};
 use super::level::{Level, LevelPoint, Levels};
 use super::orientation;
-use crate::arm::kinematics::Kinematics;
+use crate::arm::kinematics::{JacobianRows, Kinematics};
 use crate::fault::IndexSet;
 use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
 use crate::ranges::{EXACT_ROWS, MAX_ROWS};
@@ -31,6 +31,9 @@ pub struct TaskRows<T: Real> {
     pub shortened: IndexSet,
     /// x_err: x_d - x \[m\], or the chord of [`orientation::chord`] \[1\].
     pub error: [T; MAX_ROWS],
+    /// Rows of all three axes of a level, where there is no room for them. Of the cycle alone; here, because
+    /// on the stack they would have to be cleared first.
+    aside: JacobianRows<T>,
 }
 
 impl<T: Real> TaskRows<T> {
@@ -46,6 +49,7 @@ impl<T: Real> TaskRows<T> {
             commanded: [T::ZERO; MAX_ROWS],
             error: [T::ZERO; MAX_ROWS],
             shortened: IndexSet::NONE,
+            aside: JacobianRows::new(),
         }
     }
 
@@ -70,8 +74,8 @@ impl<T: Real> TaskRows<T> {
                     let motion = kinematics.point(*link, offset);
                     let error = desired.position() - motion.x;
                     let commanded = Commanded::new(level, desired, error, motion.dx);
-                    self.push(level, &commanded, joints, |axis, row, rate| {
-                        kinematics.set_point_row(axis, *link, &motion, row, rate);
+                    self.push(level, &commanded, joints, |rows, rates| {
+                        kinematics.set_point_rows(*link, &motion, rows, rates);
                     });
                 }
                 LevelPoint::Orientation(link, turn) => {
@@ -79,31 +83,47 @@ impl<T: Real> TaskRows<T> {
                     let actual = orientation::of_frame(&motion.rotation, turn);
                     let error = orientation::chord(&desired.place, &actual);
                     let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
-                    self.push(level, &commanded, joints, |axis, row, rate| {
-                        kinematics.set_angular_row(axis, *link, row, rate);
+                    self.push(level, &commanded, joints, |rows, rates| {
+                        kinematics.set_angular_rows(*link, rows, rates);
                     });
                 }
             }
         }
     }
 
-    /// The rows of the axes that the level controls; `set_row` writes those of J and dJ/dt of
-    /// an axis in their place.
+    /// The rows of the axes that the level controls; `set` writes those of all three axes, of J and
+    /// dJ/dt: from the first row of the level on if there is room for them, else aside.
     #[inline(always)]
     fn push(
         &mut self,
         level: &Level<T>,
         commanded: &Commanded<T>,
         joints: &JointState<T>,
-        set_row: impl Fn(usize, &mut JointVector<T>, &mut JointVector<T>),
+        set: impl Fn(&mut [JointVector<T>; 3], &mut [JointVector<T>; 3]),
     ) {
         let start = self.count;
         self.shortened.insert_if(level.slot, commanded.shortened);
+        let places = (
+            three_from(&mut self.jacobian, start),
+            three_from(&mut self.jacobian_dot, start),
+        );
+        let (in_place, rows, rates) = match places {
+            (Some(rows), Some(rates)) => (true, rows, rates),
+            _ => (false, &mut self.aside.jacobian, &mut self.aside.jacobian_dot),
+        };
+        set(rows, rates);
         for axis in 0..3 {
             let place = self.count;
             if level.axes.contains(axis) && place < MAX_ROWS {
-                let rate = &mut self.jacobian_dot[place];
-                set_row(axis, &mut self.jacobian[place], rate);
+                let from = start + axis;
+                if !in_place {
+                    self.jacobian[place] = self.aside.jacobian[axis];
+                    self.jacobian_dot[place] = self.aside.jacobian_dot[axis];
+                } else if place < from && from < MAX_ROWS {
+                    self.jacobian[place] = self.jacobian[from];
+                    self.jacobian_dot[place] = self.jacobian_dot[from];
+                }
+                let rate = &self.jacobian_dot[place];
                 let mut bias = T::ZERO;
                 for i in 0..DOF {
                     bias += rate[i] * joints.dq[i];
@@ -151,6 +171,15 @@ impl<T: Real> TaskRows<T> {
         }
         transport
     }
+}
+
+/// Three rows from `start` on, if there is room for so many.
+#[inline(always)]
+fn three_from<T: Real>(
+    rows: &mut [JointVector<T>; MAX_ROWS],
+    start: usize,
+) -> Option<&mut [JointVector<T>; 3]> {
+    rows.get_mut(start..)?.first_chunk_mut()
 }
 
 impl<T: Real> Default for TaskRows<T> {
