@@ -179,8 +179,7 @@ impl<T: Real> Kinematics<T> {
             set_rows_at(rows, i, &z.cross(&lever));
             set_rows_at(rates, i, &(dz.cross(&lever) + z.cross(&lever_rate)));
         }
-        self.cut(link, rows);
-        self.cut(link, rates);
+        self.cut(link, rows, rates);
     }
 
     /// Velocity of the base: zeros that the compiler does not know, because constant ones are
@@ -192,9 +191,11 @@ impl<T: Real> Kinematics<T> {
 
     /// Joints behind `link` do not move it.
     #[inline(always)]
-    fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3]) {
+    fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3], rates: &mut [JointVector<T>; 3]) {
+        let zero = self.at_rest();
         for i in link.number()..DOF {
-            set_rows_at(rows, i, &self.at_rest());
+            set_rows_at(rows, i, &zero);
+            set_rows_at(rates, i, &zero);
         }
     }
 
@@ -231,8 +232,7 @@ impl<T: Real> Kinematics<T> {
             set_rows_at(rows, i, &self.joint_axis(i));
             set_rows_at(rates, i, &rows_at(&self.axis_rate, i));
         }
-        self.cut(link, rows);
-        self.cut(link, rates);
+        self.cut(link, rows, rates);
     }
 }
 

@@ -1,11 +1,12 @@
 //! The stacked rows J, dJ/dt that all levels make together, and what they command.
 
+use super::Axes;
 use super::followed::{Followed, Motion};
 use super::level::{Level, LevelPoint, Levels};
 use super::orientation;
 use crate::arm::kinematics::{JacobianRows, Kinematics};
 use crate::fault::IndexSet;
-use crate::joint::{DOF, JointState, JointVector, Vector3, zeros};
+use crate::joint::{DOF, JointState, JointVector, Vector3, in_turn, zeros};
 use crate::ranges::{EXACT_ROWS, MAX_ROWS};
 use crate::real::Real;
 
@@ -69,53 +70,46 @@ impl<T: Real> TaskRows<T> {
                 continue;
             };
             let desired = &followed.now;
-            match &level.tracked {
+            let start = self.count;
+            // Rows of all three axes, in their place if there is room for them.
+            let places = (
+                three_from(&mut self.jacobian, start),
+                three_from(&mut self.jacobian_dot, start),
+            );
+            let (in_place, rows, rates) = match places {
+                (Some(rows), Some(rates)) => (true, rows, rates),
+                _ => (false, &mut self.aside.jacobian, &mut self.aside.jacobian_dot),
+            };
+            let commanded = match &level.tracked {
                 LevelPoint::Position(link, offset) => {
                     let motion = kinematics.point(*link, offset);
                     let error = desired.position() - motion.x;
-                    let commanded = Commanded::new(level, desired, error, motion.dx);
-                    self.push(level, &commanded, joints, |rows, rates| {
-                        kinematics.set_point_rows(*link, &motion, rows, rates);
-                    });
+                    kinematics.set_point_rows(*link, &motion, rows, rates);
+                    Commanded::new(level, desired, error, motion.dx)
                 }
                 LevelPoint::Orientation(link, turn) => {
                     let motion = kinematics.link(*link);
                     let actual = orientation::of_frame(&motion.rotation, turn);
                     let error = orientation::chord(&desired.place, &actual);
-                    let commanded = Commanded::new(level, desired, error, motion.angular_velocity);
-                    self.push(level, &commanded, joints, |rows, rates| {
-                        kinematics.set_angular_rows(*link, rows, rates);
-                    });
+                    kinematics.set_angular_rows(*link, rows, rates);
+                    Commanded::new(level, desired, error, motion.angular_velocity)
                 }
+            };
+            if level.axes != Axes::XYZ || !in_place {
+                self.keep_rows(level.axes, start, in_place);
             }
+            self.shortened.insert_if(level.slot, commanded.shortened);
+            self.push(level, &commanded, &joints.dq);
         }
     }
 
-    /// The rows of the axes that the level controls; `set` writes those of all three axes, of J and
-    /// dJ/dt: from the first row of the level on if there is room for them, else aside.
-    #[inline(always)]
-    fn push(
-        &mut self,
-        level: &Level<T>,
-        commanded: &Commanded<T>,
-        joints: &JointState<T>,
-        set: impl Fn(&mut [JointVector<T>; 3], &mut [JointVector<T>; 3]),
-    ) {
-        let start = self.count;
-        self.shortened.insert_if(level.slot, commanded.shortened);
-        let places = (
-            three_from(&mut self.jacobian, start),
-            three_from(&mut self.jacobian_dot, start),
-        );
-        let (in_place, rows, rates) = match places {
-            (Some(rows), Some(rates)) => (true, rows, rates),
-            _ => (false, &mut self.aside.jacobian, &mut self.aside.jacobian_dot),
-        };
-        set(rows, rates);
-        for axis in 0..3 {
-            let place = self.count;
-            if level.axes.contains(axis) && place < MAX_ROWS {
-                let from = start + axis;
+    /// Of rows of all three axes those that a level controls, one behind the other.
+    #[inline(never)]
+    fn keep_rows(&mut self, axes: Axes, start: usize, in_place: bool) {
+        let mut place = start;
+        for axis in in_turn::<3>(3) {
+            let from = start + axis;
+            if axes.contains(axis) && place < MAX_ROWS {
                 if !in_place {
                     self.jacobian[place] = self.aside.jacobian[axis];
                     self.jacobian_dot[place] = self.aside.jacobian_dot[axis];
@@ -123,10 +117,22 @@ impl<T: Real> TaskRows<T> {
                     self.jacobian[place] = self.jacobian[from];
                     self.jacobian_dot[place] = self.jacobian_dot[from];
                 }
+                place += 1;
+            }
+        }
+    }
+
+    /// What belongs to the rows of the axes that the level controls.
+    #[inline(always)]
+    fn push(&mut self, level: &Level<T>, commanded: &Commanded<T>, dq: &JointVector<T>) {
+        let start = self.count;
+        for axis in 0..3 {
+            let place = self.count;
+            if level.axes.contains(axis) && place < MAX_ROWS {
                 let rate = &self.jacobian_dot[place];
                 let mut bias = T::ZERO;
                 for i in 0..DOF {
-                    bias += rate[i] * joints.dq[i];
+                    bias += rate[i] * dq[i];
                 }
                 self.level_start[place] = start;
                 self.bias[place] = bias;
