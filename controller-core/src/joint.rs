@@ -33,6 +33,13 @@ pub(crate) fn in_turn<const N: usize>(count: usize) -> impl Iterator<Item = usiz
     (0..black_box(count)).map(|i| black_box(i).min(N - 1))
 }
 
+/// The indices below `count`, likewise in a loop that is not laid out several times.
+#[inline(always)]
+pub(crate) fn rolled(count: usize) -> impl Iterator<Item = usize> {
+    // What the compiler cannot see through in the loop keeps it from doing so.
+    (0..count).inspect(|_| black_box(()))
+}
+
 /// A matrix of zeros, usable in constants and statics.
 #[must_use]
 pub const fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {

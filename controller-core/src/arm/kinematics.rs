@@ -3,7 +3,7 @@
 
 use crate::arm::link::Link;
 use crate::arm::model::ArmModel;
-use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, zeros};
+use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, rolled, zeros};
 use crate::linalg::for_each_joint;
 use crate::real::Real;
 
@@ -172,10 +172,11 @@ impl<T: Real> Kinematics<T> {
         rows: &mut [JointVector<T>; 3],
         rates: &mut [JointVector<T>; 3],
     ) {
-        for i in 0..link.number() {
+        let PointMotion { x, dx } = *motion;
+        for i in rolled(link.number()) {
             let (z, dz) = (self.joint_axis(i), rows_at(&self.axis_rate, i));
-            let lever = motion.x - self.joint_place(i);
-            let lever_rate = motion.dx - column(&self.velocity, i);
+            let lever = x - self.joint_place(i);
+            let lever_rate = dx - column(&self.velocity, i);
             set_rows_at(rows, i, &z.cross(&lever));
             set_rows_at(rates, i, &(dz.cross(&lever) + z.cross(&lever_rate)));
         }
@@ -193,7 +194,7 @@ impl<T: Real> Kinematics<T> {
     #[inline(always)]
     fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3], rates: &mut [JointVector<T>; 3]) {
         let zero = self.at_rest();
-        for i in link.number()..DOF {
+        for i in rolled(DOF).skip(link.number()) {
             set_rows_at(rows, i, &zero);
             set_rows_at(rates, i, &zero);
         }
@@ -228,7 +229,7 @@ impl<T: Real> Kinematics<T> {
         rows: &mut [JointVector<T>; 3],
         rates: &mut [JointVector<T>; 3],
     ) {
-        for i in 0..link.number() {
+        for i in rolled(link.number()) {
             set_rows_at(rows, i, &self.joint_axis(i));
             set_rows_at(rates, i, &rows_at(&self.axis_rate, i));
         }
