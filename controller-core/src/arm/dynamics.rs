@@ -18,7 +18,9 @@ use crate::linalg::Cholesky;
 use crate::real::Real;
 
 /// Everything of the equation of motion (6) that depends on q and dq.
+// In this order in memory: both matrices lie within reach of one base register.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Dynamics<T: Real> {
     /// M(q) \[kg m2\], rotors included, symmetric, positive definite.
     pub mass_matrix: JointMatrix<T>,

@@ -14,8 +14,13 @@ const FRAMES: usize = DOF + 1;
 ///
 /// What stands by rows x, y, z has one entry per DH frame; frame i moves with link i, 0 is fixed.
 /// Its z axis is that of joint i + 1.
+// In this order in memory: what has an entry per joint lies within reach of one base register.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Kinematics<T: Real> {
+    /// Sine and cosine of the DH angles, for the dynamics.
+    pub(crate) sine: Padded<T>,
+    pub(crate) cosine: Padded<T>,
     /// z axes of the frames, unit vectors, by rows.
     axis: [[T; FRAMES]; 3],
     /// Time derivatives of the joints' axes \[1/s\], by rows.
@@ -27,9 +32,6 @@ pub struct Kinematics<T: Real> {
     sides: [[Vector3<T>; 2]; DOF],
     /// Angular velocity of each link \[rad/s\].
     spin: [Vector3<T>; DOF],
-    /// Sine and cosine of the DH angles, for the dynamics.
-    pub(crate) sine: Padded<T>,
-    pub(crate) cosine: Padded<T>,
 }
 
 /// A point of the arm at one instant.
