@@ -33,11 +33,18 @@ pub(crate) fn in_turn<const N: usize>(count: usize) -> impl Iterator<Item = usiz
     (0..black_box(count)).map(|i| black_box(i).min(N - 1))
 }
 
-/// The indices below `count`, likewise in a loop that is not laid out several times.
+/// The first `count` joints, in a loop that stays one, or with a vector unit all of them: it takes
+/// four at once as long as they are as many as the compiler knows.
 #[inline(always)]
-pub(crate) fn rolled(count: usize) -> impl Iterator<Item = usize> {
-    // What the compiler cannot see through in the loop keeps it from doing so.
-    (0..count).inspect(|_| black_box(()))
+pub(crate) fn joints_up_to(count: usize) -> impl Iterator<Item = usize> {
+    let alone = cfg!(target_arch = "arm");
+    let joints = 0..if alone { count } else { DOF };
+    joints.inspect(move |_| {
+        if alone {
+            // What the compiler cannot see through is not laid out several times.
+            black_box(());
+        }
+    })
 }
 
 /// A matrix of zeros, usable in constants and statics.

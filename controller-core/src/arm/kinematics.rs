@@ -3,7 +3,7 @@
 
 use crate::arm::link::Link;
 use crate::arm::model::ArmModel;
-use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, rolled, zeros};
+use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, joints_up_to, zeros};
 use crate::linalg::for_each_joint;
 use crate::real::Real;
 
@@ -175,7 +175,7 @@ impl<T: Real> Kinematics<T> {
         rates: &mut [JointVector<T>; 3],
     ) {
         let PointMotion { x, dx } = *motion;
-        for i in rolled(link.number()) {
+        for i in joints_up_to(link.number()) {
             let (z, dz) = (self.joint_axis(i), rows_at(&self.axis_rate, i));
             let lever = x - self.joint_place(i);
             let lever_rate = dx - column(&self.velocity, i);
@@ -196,7 +196,7 @@ impl<T: Real> Kinematics<T> {
     #[inline(always)]
     fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3], rates: &mut [JointVector<T>; 3]) {
         let zero = self.at_rest();
-        for i in rolled(DOF).skip(link.number()) {
+        for i in link.number()..DOF {
             set_rows_at(rows, i, &zero);
             set_rows_at(rates, i, &zero);
         }
@@ -231,7 +231,7 @@ impl<T: Real> Kinematics<T> {
         rows: &mut [JointVector<T>; 3],
         rates: &mut [JointVector<T>; 3],
     ) {
-        for i in rolled(link.number()) {
+        for i in joints_up_to(link.number()) {
             set_rows_at(rows, i, &self.joint_axis(i));
             set_rows_at(rates, i, &rows_at(&self.axis_rate, i));
         }
