@@ -2,6 +2,7 @@
 //! state one measurement brings.
 
 use core::hint::black_box;
+use core::ops::Range;
 
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
@@ -33,14 +34,26 @@ pub(crate) fn in_turn<const N: usize>(count: usize) -> impl Iterator<Item = usiz
     (0..black_box(count)).map(|i| black_box(i).min(N - 1))
 }
 
-/// The first `count` joints, in a loop that stays one, or with a vector unit all of them: it takes
-/// four at once as long as they are as many as the compiler knows.
+/// Whether numbers of all joints are computed one after the other: a vector unit takes four at once,
+/// as long as they are as many as the compiler knows.
+const ONE_BY_ONE: bool = cfg!(target_arch = "arm");
+
+/// The first `count` joints, in a loop that stays one, or with a vector unit all of them.
 #[inline(always)]
 pub(crate) fn joints_up_to(count: usize) -> impl Iterator<Item = usize> {
-    let alone = cfg!(target_arch = "arm");
-    let joints = 0..if alone { count } else { DOF };
-    joints.inspect(move |_| {
-        if alone {
+    staying(0..if ONE_BY_ONE { count } else { DOF })
+}
+
+/// The joints behind the first `count`, in a loop that stays one.
+#[inline(always)]
+pub(crate) fn joints_behind(count: usize) -> impl Iterator<Item = usize> {
+    staying(count..DOF)
+}
+
+#[inline(always)]
+fn staying(joints: Range<usize>) -> impl Iterator<Item = usize> {
+    joints.inspect(|_| {
+        if ONE_BY_ONE {
             // What the compiler cannot see through is not laid out several times.
             black_box(());
         }

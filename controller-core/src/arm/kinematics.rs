@@ -3,7 +3,10 @@
 
 use crate::arm::link::Link;
 use crate::arm::model::ArmModel;
-use crate::joint::{ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, joints_up_to, zeros};
+use crate::joint::{
+    ALIKE, DOF, JointState, JointVector, Matrix3, Padded, Vector3, joints_behind, joints_up_to,
+    zeros,
+};
 use crate::linalg::for_each_joint;
 use crate::real::Real;
 
@@ -196,7 +199,7 @@ impl<T: Real> Kinematics<T> {
     #[inline(always)]
     fn cut(&self, link: Link, rows: &mut [JointVector<T>; 3], rates: &mut [JointVector<T>; 3]) {
         let zero = self.at_rest();
-        for i in link.number()..DOF {
+        for i in joints_behind(link.number()) {
             set_rows_at(rows, i, &zero);
             set_rows_at(rates, i, &zero);
         }

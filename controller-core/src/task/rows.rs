@@ -78,7 +78,11 @@ impl<T: Real> TaskRows<T> {
             );
             let (in_place, rows, rates) = match places {
                 (Some(rows), Some(rates)) => (true, rows, rates),
-                _ => (false, &mut self.aside.jacobian, &mut self.aside.jacobian_dot),
+                _ => (
+                    false,
+                    &mut self.aside.jacobian,
+                    &mut self.aside.jacobian_dot,
+                ),
             };
             let commanded = match &level.tracked {
                 LevelPoint::Position(link, offset) => {
