@@ -47,7 +47,7 @@ pub(crate) fn joints_up_to(count: usize) -> impl Iterator<Item = usize> {
 /// The joints behind the first `count`, in a loop that stays one.
 #[inline(always)]
 pub(crate) fn joints_behind(count: usize) -> impl Iterator<Item = usize> {
-    staying(count..DOF)
+    staying(0..DOF).skip(count)
 }
 
 #[inline(always)]
