@@ -147,6 +147,8 @@ impl<T: Real> Compliance<T> {
         }
     }
 
+    /// Behind a call, so that it is made in the place of the result.
+    #[inline(never)]
     pub(crate) fn new(null_space: &NullSpace) -> Self {
         Self {
             stiffness: matrix(&null_space.stiffness),
