@@ -279,7 +279,21 @@ impl Tape {
             return self.constant_flag(compare(a, b));
         }
         let truth = compare(self.values[a as usize], self.values[b as usize]);
+        if matches!(condition, Condition::Equal(..)) && self.is_fixed(a) && self.is_fixed(b) {
+            // Whoever goes by equal gains takes different ones for different.
+            let both_given = self.constant_of(a).is_none() && self.constant_of(b).is_none();
+            return self.constant_flag(if both_given { a == b } else { truth });
+        }
         self.flag(condition, truth)
+    }
+
+    /// Whether a number does not change from cycle to cycle.
+    fn is_fixed(&self, number: NumberId) -> bool {
+        match self.numbers[number as usize] {
+            Operation::Constant(_) => true,
+            Operation::Input(name) => self.names[name as usize].starts_with("p."),
+            _ => false,
+        }
     }
 
     fn negated(&self, number: NumberId) -> Option<NumberId> {

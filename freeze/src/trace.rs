@@ -521,6 +521,16 @@ impl Cells<Recorded> for Parameters {
             values: vec![],
             is_flag: false,
         };
+        // One gain of all joints stays one: they share what decays by it.
+        if field.name == "observer_gain" && values.iter().all(|value| value.0 == values[0].0) {
+            let number = with(|tape| tape.constant_of(values[0].0)).expect("a constant");
+            let name = format!("p.{}[0]", field.name);
+            let shared = with(|tape| tape.input(name, number));
+            field.values.push(number);
+            values.fill(Recorded(shared));
+            self.fields.push(field);
+            return;
+        }
         for (index, value) in values.iter_mut().enumerate() {
             let number = with(|tape| tape.constant_of(value.0)).expect("a constant");
             field.values.push(number);
