@@ -9,7 +9,6 @@ use controller_core::fault::IndexSet;
 
 use crate::scalar::Recorded;
 use crate::tape::{Condition, Decision, FlagId, NumberId, Operation, with};
-use crate::trace::Value;
 
 /// A small number that a part leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +19,14 @@ pub enum Count {
     Pivots(u32),
     /// What the paths of a region leave in one place.
     Merged { region: u32, place: u32 },
+}
+
+/// What is left in one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Value {
+    Number(NumberId),
+    Flag(FlagId),
+    Count(Count),
 }
 
 /// What is left at the end of a path, in the order of a visit.

@@ -3,9 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::explore::{Count, Paths};
+use crate::explore::{Count, Paths, Value};
 use crate::tape::{Condition, FlagId, NumberId, Operation, Tape};
-use crate::trace::{Function, Search, Value};
+use crate::trace::{Function, Search};
 
 /// A statement.
 #[derive(Debug)]

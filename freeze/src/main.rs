@@ -116,11 +116,7 @@ fn of_scenario(name: &str) -> Result<Job, String> {
     let config = scenario
         .controller_config(0)
         .map_err(|error| error.to_string())?;
-    Ok((
-        scenario.arm().parameters,
-        config,
-        scenario.name.to_string(),
-    ))
+    Ok((scenario.arm().parameters, config, scenario.name.to_string()))
 }
 
 fn of_levels(arm: &str, levels: &str) -> Result<Job, String> {

@@ -1,9 +1,10 @@
 //! The file in Rust.
 
-use crate::Frozen;
+use crate::explore::Value;
+use crate::frozen::Frozen;
 use crate::layout::Body;
 use crate::tape::Precision;
-use crate::trace::{Field, Value};
+use crate::trace::Field;
 use crate::write::{Function, Kind, Language, WrittenBody, lines};
 
 /// Rust in one precision.
@@ -129,8 +130,16 @@ fn declared(fields: &[&Field]) -> String {
     lines.collect()
 }
 
+impl Frozen {
+    /// The file in Rust: `no_std`, it needs the scalar of `controller-core` and nothing else of it.
+    #[must_use]
+    pub fn rust(&self) -> String {
+        write(self)
+    }
+}
+
 /// The whole file.
-pub fn write(frozen: &Frozen) -> String {
+fn write(frozen: &Frozen) -> String {
     let language = Rust {
         precision: frozen.precision,
     };

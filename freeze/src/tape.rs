@@ -145,9 +145,6 @@ struct Path {
     seen: HashMap<FlagId, bool>,
 }
 
-/// Numbers of the scalar that are known before anything is recorded.
-pub const KNOWN: [NumberId; 5] = [0, 1, 2, 3, 4];
-
 impl Tape {
     fn new(precision: Precision) -> Self {
         let mut tape = Self {

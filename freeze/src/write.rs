@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
 
-use crate::explore::Count;
+use crate::explore::{Count, Value};
 use crate::layout::{Body, Statement};
 use crate::tape::{Condition, FlagId, NumberId, Operation, Tape};
-use crate::trace::{Search, Value};
+use crate::trace::Search;
 
 /// What differs between languages.
 pub trait Language {
@@ -374,8 +374,8 @@ impl<L: Language> Writer<'_, L> {
                     for text in self.language.sines_cosines(&sines, &cosines, &given) {
                         self.line(&text);
                     }
-                    self.name_entries(angles, |angle| Operation::Sine(angle), &sines);
-                    self.name_entries(angles, |angle| Operation::Cosine(angle), &cosines);
+                    self.name_entries(angles, Operation::Sine, &sines);
+                    self.name_entries(angles, Operation::Cosine, &cosines);
                 }
                 Statement::Exponentials(of) => {
                     self.next += 1;
@@ -384,7 +384,7 @@ impl<L: Language> Writer<'_, L> {
                     for text in self.language.exponentials(&name, &given) {
                         self.line(&text);
                     }
-                    self.name_entries(of, |of| Operation::ExpNegative(of), &name);
+                    self.name_entries(of, Operation::ExpNegative, &name);
                 }
                 Statement::Search(search) => {
                     let given: Vec<String> = self.searches[*search as usize]

@@ -16,6 +16,9 @@ pub struct Figures {
     pub inputs: u64,
     /// One entry per controller and precision.
     pub controllers: Vec<Controller>,
+    /// The same cycles frozen.
+    #[serde(default)]
+    pub frozen: Vec<FrozenCycle>,
     /// Size of the types \[bytes\], by precision.
     pub sizes: BTreeMap<String, BTreeMap<String, u64>>,
     /// Memory of the application image \[bytes\].
@@ -58,6 +61,17 @@ pub struct Controller {
     pub stack: Stack,
     /// Code of the cycle \[bytes\].
     pub code: u64,
+}
+
+/// A frozen cycle on the same inputs, equal to the generic one in every bit.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct FrozenCycle {
+    /// Its scenario and precision.
+    pub name: String,
+    /// Instructions with nothing at a limit: smallest, largest.
+    pub idle: [u64; 2],
+    /// Of the longest one.
+    pub longest: u64,
 }
 
 /// Instructions over all inputs.
@@ -213,6 +227,24 @@ impl Figures {
                     ..Controller::default()
                 });
             }
+            [
+                "frozen",
+                experiment,
+                precision,
+                "idle",
+                least,
+                most,
+                "longest",
+                longest,
+                "differing",
+                "0",
+                "faults",
+                _,
+            ] => self.frozen.push(FrozenCycle {
+                name: format!("{experiment} {precision}"),
+                idle: [number(least)?, number(most)?],
+                longest: number(longest)?,
+            }),
             ["size", precision, ref pairs @ ..] => {
                 let sizes = self.sizes.entry(precision.into()).or_default();
                 for pair in pairs.chunks_exact(2) {
@@ -295,6 +327,11 @@ impl Figures {
             let working = bound(self.working_memory(controller));
             add(of, "state and stack of the cycle, bytes", working);
             add(of, "code of the cycle, bytes", controller.code);
+        }
+        for frozen in &self.frozen {
+            let of = &frozen.name;
+            add(of, "frozen cycle, instructions", frozen.idle[1]);
+            add(of, "longest frozen cycle, instructions", frozen.longest);
         }
         for (precision, sizes) in &self.sizes {
             for (name, &bytes) in sizes {

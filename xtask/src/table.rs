@@ -26,6 +26,7 @@ pub fn page(figures: &Figures) -> String {
         ("{tools}", tools(figures)),
         ("{cycles}", cycles(figures)),
         ("{paths}", paths(figures)),
+        ("{frozen}", frozen(figures)),
         ("{limits}", limits()),
         ("{stages}", stages(figures)),
         ("{links}", links(figures)),
@@ -40,7 +41,12 @@ pub fn page(figures: &Figures) -> String {
 
 /// What the command prints.
 pub fn summary(figures: &Figures) -> String {
-    let parts = [cycles(figures), paths(figures), memory(figures)];
+    let parts = [
+        cycles(figures),
+        paths(figures),
+        frozen(figures),
+        memory(figures),
+    ];
     parts.join("\n")
 }
 
@@ -132,6 +138,23 @@ fn paths(figures: &Figures) -> String {
         .iter()
         .map(|it| format!(" | {}", it.name()));
     table(&format!("cycle{}", names.collect::<String>()), lines)
+}
+
+/// The same cycles frozen, beside the generic ones.
+fn frozen(figures: &Figures) -> String {
+    let rows = figures.frozen.iter().map(|frozen| {
+        let generic = figures.controllers.iter();
+        let generic = generic.clone().find(|it| it.name() == frozen.name);
+        let (idle, longest) = generic.map_or((0, 0), |it| (idle(it), it.cycle.max));
+        let [least, most] = frozen.idle;
+        let share = most as f64 / idle as f64;
+        format!(
+            "{} | {idle} | {least} to {most} | {share:.2} | {longest} | {}",
+            frozen.name, frozen.longest
+        )
+    });
+    let head = "controller | generic | frozen | share | longest generic | longest frozen";
+    table(head, rows)
 }
 
 fn rows(experiment: &str) -> &'static str {

@@ -105,7 +105,7 @@ fn print_inputs(name: &str, precision: &str, survey: &Survey) {
 }
 
 #[cfg(not(target_os = "none"))]
-fn main() {
+fn main() -> std::process::ExitCode {
     use firmware::stages::survey;
 
     /// The host counts nothing.
@@ -128,7 +128,7 @@ fn main() {
             print_inputs(scenario.name(), "f32", &survey(&mut rig, &Still, cycle_f32));
         }
     }
-    compare_frozen(&Still);
+    u8::from(!compare_frozen(&Still)).into()
 }
 
 #[cfg(target_os = "none")]
