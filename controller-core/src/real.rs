@@ -46,7 +46,7 @@ pub trait Real:
     fn floor_small(self) -> Self;
     /// Absolute value.
     fn magnitude(self) -> Self;
-    /// Absolute value of `self` with the sign of `sign` (the sign of a zero counts).
+    /// Absolute value of `self` with the sign of `sign`; zeros of either sign count as positive.
     fn with_sign_of(self, sign: Self) -> Self;
     /// Neither infinite nor NaN.
     fn finite(self) -> bool;
@@ -201,7 +201,7 @@ macro_rules! real {
 
             #[inline(always)]
             fn with_sign_of(self, sign: Self) -> Self {
-                self.copysign(sign)
+                self.copysign(sign + 0.0)
             }
 
             #[inline(always)]

@@ -99,21 +99,20 @@ impl<T: Real> Hierarchy<T> {
             norm_squared += row[i] * row[i];
         }
         let norm = norm_squared.square_root();
-        // Against the entry; of a zero whatever its sign.
-        let pivot = row[K].choose_below(T::ZERO, norm, -norm);
+        let pivot = -norm.with_sign_of(row[K]);
+        let (one, zero) = (T::ONE, T::ZERO);
         let threshold = T::from_f64(RANK_THRESHOLD);
-        let resolvable = |yes: T, no: T| norm_squared.choose_below(threshold, no, yes);
+        let resolvable = norm_squared.choose_below(threshold, zero, one);
         // Below this a row is zero in either precision: no reflection.
-        let turns = |yes: T, no: T| T::from_f64(1e-30).choose_below(norm_squared, yes, no);
+        let turns = T::from_f64(1e-30).choose_below(norm_squared, one, zero);
 
         let head = row[K] - pivot;
         self.factors[K][K] = head;
         self.pivot[K] = pivot;
-        // Divisors are made harmless before the division: no branch.
+        // Divisors are made harmless by a sum: a choice of them may become a branch.
         let scale = norm * (norm + (pivot + head).magnitude());
-        let one = T::ONE;
-        self.scale[K] = turns(one / turns(scale, one), T::ZERO);
-        self.inverse_pivot[K] = resolvable(one / resolvable(pivot, one), T::ZERO);
+        self.scale[K] = turns / (scale + (one - turns));
+        self.inverse_pivot[K] = resolvable / (pivot + (one - resolvable));
         self.deficient.insert_if(K, norm_squared < threshold);
     }
 

@@ -59,8 +59,7 @@ impl<T: Real> Eigen<T> {
         // Keeps 0 / 0 away and changes nothing else.
         let tiny = T::from_f64(1e-30);
         let root = (half * half + between * between).square_root() + tiny;
-        let away = half.choose_below(T::ZERO, -root, root);
-        let tangent = between / (half + away);
+        let tangent = between / (half + root.with_sign_of(half));
         let cosine = T::ONE / (T::ONE + tangent * tangent).square_root();
         let sine = cosine * tangent;
         values[P] -= tangent * between;
