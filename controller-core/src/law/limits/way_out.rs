@@ -146,7 +146,8 @@ impl<T: Real> WayOut<T> {
                 self.whitened = arm.dynamics.cholesky.upper_times(&self.acceleration);
                 let way = self.side(arm, level, &(lost / error));
                 self.stuck.insert_if(level.slot, way.is_none());
-                let asked = way.map_or(T::ZERO, |side| self.asked(arm, side) * share);
+                // To no side where there is none: 0.
+                let asked = self.asked(arm, way.unwrap_or(T::ZERO)) * share;
                 self.acceleration *= asked;
                 self.whitened *= asked;
                 return true;
