@@ -1,6 +1,6 @@
 //! The plant's model: geometry, masses, energies, and points of the arm.
 //!
-//! What is of a link: [`super::body`] in DH frames, [`super::segment`] in joint frames.
+//! What is of a link: `body` in DH frames, `segment` in joint frames.
 
 use controller_core::arm::ArmParameters;
 use controller_core::joint::{DOF, JointState, JointVector, Matrix3, Vector3};
