@@ -1,7 +1,5 @@
 //! What something consists of: its numbers and flags by name, for tools that write a cycle down.
 
-use crate::fault::IndexSet;
-
 /// Sees numbers and flags, always in the same order, and may change them.
 pub trait Cells<T> {
     /// What follows belongs to the level at a place, or to none.
@@ -12,8 +10,8 @@ pub trait Cells<T> {
     fn numbers(&mut self, name: &'static str, values: &mut [T]);
     /// One flag.
     fn flag(&mut self, name: &'static str, value: &mut bool);
-    /// Flags of joints, rows or slots.
-    fn set(&mut self, name: &'static str, value: &mut IndexSet);
+    /// Flags of joints, rows or slots: bit i of number i + 1.
+    fn set(&mut self, name: &'static str, bits: &mut u8);
     /// A small number.
     fn count(&mut self, name: &'static str, value: &mut u8);
 }

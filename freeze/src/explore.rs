@@ -5,7 +5,6 @@
 //! decided. Any other one splits the part in two.
 
 use controller_core::cells::Cells;
-use controller_core::fault::IndexSet;
 
 use crate::scalar::Recorded;
 use crate::tape::{Condition, Decision, FlagId, NumberId, Operation, with};
@@ -141,8 +140,8 @@ impl Cells<Recorded> for Outcome {
     fn flag(&mut self, _: &'static str, value: &mut bool) {
         self.flags.push(*value);
     }
-    fn set(&mut self, _: &'static str, value: &mut IndexSet) {
-        self.flags.extend((0..8).map(|bit| value.contains(bit)));
+    fn set(&mut self, _: &'static str, bits: &mut u8) {
+        self.flags.extend((0..8).map(|bit| *bits >> bit & 1 != 0));
     }
     fn count(&mut self, _: &'static str, value: &mut u8) {
         self.counts.push(Count::Constant(*value));

@@ -50,7 +50,7 @@ impl Nominal {
         let measurement = Measurement {
             q: *q,
             dq: zeros(),
-            interval_s: controller.cycle_s(),
+            interval_s: controller.nominal_interval_s(),
         };
         let reference = controller.rest_reference(q);
         let mut state = State::new();

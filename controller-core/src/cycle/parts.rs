@@ -107,7 +107,7 @@ impl<T: Real> Controller<T> {
 
     /// The nominal interval \[s\].
     #[must_use]
-    pub fn cycle_s(&self) -> T {
+    pub fn nominal_interval_s(&self) -> T {
         self.cycle_s
     }
 
@@ -239,7 +239,7 @@ impl<T: Real> Controller<T> {
             Group::Posture => data.followed.visit_posture(cells),
             Group::PostureReference => cells.numbers("q_d", data.posture.as_mut_slice()),
             Group::Joining => data.followed.visit_joining(cells),
-            Group::Shortened => cells.set("shortened", &mut data.rows.shortened),
+            Group::Shortened => cells.set("shortened", &mut data.rows.shortened.0),
             Group::Spectrum => data.spectrum.visit(cells),
             Group::Deficient => data.hierarchy.visit(cells),
             Group::WayOut => data.way_out.visit(cells),

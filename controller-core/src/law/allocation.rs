@@ -74,8 +74,8 @@ impl<T: Real> Allocation<T> {
     /// What it remembers and tells.
     pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
         cells.numbers("torque", self.torque.as_mut_slice());
-        cells.set("saturated", &mut self.saturated);
-        cells.set("rate_limited", &mut self.rate_limited);
+        cells.set("saturated", &mut self.saturated.0);
+        cells.set("rate_limited", &mut self.rate_limited.0);
         cells.flag("finite", &mut self.finite);
         cells.flag("acts", &mut self.acts);
     }

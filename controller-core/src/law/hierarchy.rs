@@ -138,7 +138,7 @@ impl<T: Real> Hierarchy<T> {
 
     /// What it tells.
     pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
-        cells.set("rank", &mut self.deficient);
+        cells.set("rank", &mut self.deficient.0);
     }
 
     /// Rows that are not resolvable given the rows above them.

@@ -173,7 +173,7 @@ impl<T: Real> Followed<T> {
 
     /// What is told of all.
     pub(crate) fn visit_joining(&mut self, cells: &mut impl Cells<T>) {
-        cells.set("joining", &mut self.joining);
+        cells.set("joining", &mut self.joining.0);
     }
 
     /// What the posture remembers.

@@ -4,7 +4,6 @@ use controller_core::cells::Cells;
 use controller_core::cycle::Input;
 use controller_core::cycle::parts::{BrakePart, Group, Part};
 use controller_core::cycle::stages::StageName;
-use controller_core::fault::IndexSet;
 use controller_core::joint::DOF;
 
 use super::inputs::decided;
@@ -188,13 +187,13 @@ impl Cells<Recorded> for Found {
             *value = self.decided(16);
         }
     }
-    fn set(&mut self, name: &'static str, value: &mut IndexSet) {
+    fn set(&mut self, name: &'static str, bits: &mut u8) {
         let first = match name {
             "at_least" => 0,
             "at_greatest" => 8,
             _ => return,
         };
-        value.0 = (0..7)
+        *bits = (0..7)
             .map(|bit| u8::from(self.decided(first + bit)) << bit)
             .sum();
     }

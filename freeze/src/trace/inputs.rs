@@ -1,7 +1,6 @@
 //! What comes from outside: the state, measurement and reference, gains and limits, each by a name.
 
 use controller_core::cells::Cells;
-use controller_core::fault::IndexSet;
 use controller_core::joint::{JointVector, Vector3};
 use controller_core::task::orientation::Quaternion;
 use controller_core::{Measurement, Reference, Target};
@@ -50,10 +49,10 @@ impl Cells<f64> for Names {
         self.flags.push(self.name(name));
         self.truths.push(*value);
     }
-    fn set(&mut self, name: &'static str, value: &mut IndexSet) {
+    fn set(&mut self, name: &'static str, bits: &mut u8) {
         for bit in 0..8 {
             self.flags.push(format!("{}_bit_{bit}", self.name(name)));
-            self.truths.push(value.contains(bit));
+            self.truths.push(*bits >> bit & 1 != 0);
         }
     }
     fn count(&mut self, _: &'static str, _: &mut u8) {}
@@ -91,9 +90,8 @@ impl Cells<Recorded> for Placed<'_> {
     fn flag(&mut self, _: &'static str, value: &mut bool) {
         *value = self.next_flag();
     }
-    fn set(&mut self, _: &'static str, value: &mut IndexSet) {
-        let bits = (0..8).map(|bit| u8::from(self.next_flag()) << bit);
-        value.0 = bits.sum();
+    fn set(&mut self, _: &'static str, bits: &mut u8) {
+        *bits = (0..8).map(|bit| u8::from(self.next_flag()) << bit).sum();
     }
     fn count(&mut self, _: &'static str, _: &mut u8) {}
 }
@@ -140,7 +138,7 @@ impl Cells<Recorded> for Parameters {
         self.fields.push(field);
     }
     fn flag(&mut self, _: &'static str, _: &mut bool) {}
-    fn set(&mut self, _: &'static str, _: &mut IndexSet) {}
+    fn set(&mut self, _: &'static str, _: &mut u8) {}
     fn count(&mut self, _: &'static str, _: &mut u8) {}
 }
 

@@ -89,8 +89,8 @@ impl<T: Real> Projection<T> {
         cells.numbers("smoothed_disturbance", &mut self.smoothed);
         cells.numbers("limits_power", core::slice::from_mut(&mut self.power));
         let [least, greatest] = &mut self.at_bound;
-        cells.set("at_least", least);
-        cells.set("at_greatest", greatest);
+        cells.set("at_least", &mut least.0);
+        cells.set("at_greatest", &mut greatest.0);
         cells.count("pivots", &mut self.pivots);
         cells.flag("unresolved", &mut self.unresolved);
     }

@@ -165,8 +165,8 @@ impl<T: Real> Spectrum<T> {
 
     /// What is told of the directions, and by which the next stages go.
     pub(crate) fn visit(&mut self, cells: &mut impl Cells<T>) {
-        cells.set("degraded", &mut self.degraded);
-        cells.set("released", &mut self.released);
+        cells.set("degraded", &mut self.degraded.0);
+        cells.set("released", &mut self.released.0);
         cells.flag("limits_commands", &mut self.limits_commands);
         cells.flag("shares", &mut self.shares);
     }

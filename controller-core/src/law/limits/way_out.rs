@@ -117,7 +117,7 @@ impl<T: Real> WayOut<T> {
         cells.numbers("bend_whitened", self.whitened.as_mut_slice());
         cells.numbers("bend_motion", self.motion.as_mut_slice());
         cells.flag("bends", &mut self.is_begun);
-        cells.set("stuck", &mut self.stuck);
+        cells.set("stuck", &mut self.stuck.0);
     }
 
     /// Nothing where no level is released.

@@ -121,8 +121,8 @@ impl<T: Real> Wish<T> {
         cells.numbers("level_share", &mut self.level_share);
         cells.numbers("null_share", core::slice::from_mut(&mut self.null_share));
         cells.numbers("leak", &mut self.leak);
-        cells.set("scaled", &mut self.scaled);
-        cells.set("shaped", &mut self.shaped);
+        cells.set("scaled", &mut self.scaled.0);
+        cells.set("shaped", &mut self.shaped.0);
     }
 
     /// Level by level, then the null space. Behind a call: what it reads lies far apart.
