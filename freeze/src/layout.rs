@@ -396,13 +396,6 @@ impl Layout<'_> {
             Operation::ExpNegative(of) => Some(of),
             _ => None,
         };
-        let first = |to: &mut Vec<Statement>, written: &mut HashSet<NumberId>, of: &[NumberId]| {
-            for &of in of {
-                if numbers.binary_search(&of).is_ok() && written.insert(of) {
-                    to.push(Statement::Number(of));
-                }
-            }
-        };
         for &number in numbers {
             if written.contains(&number) {
                 continue;
@@ -414,44 +407,46 @@ impl Layout<'_> {
                 continue;
             }
             if let Some(own) = angle(number) {
-                let mut of: Vec<NumberId> = vec![own];
-                if self.is_simple(own) {
-                    for other in numbers.iter().filter_map(|&number| angle(number)) {
-                        if self.is_simple(other) && !of.contains(&other) {
-                            of.push(other);
-                        }
-                    }
-                }
-                first(to, &mut written, &of);
-                for &other in numbers {
-                    if angle(other).is_some_and(|angle| of.contains(&angle)) {
-                        written.insert(other);
-                    }
-                }
-                to.push(Statement::SinesCosines(of));
+                let angles = self.at_once(own, &angle, numbers, &mut written, to);
+                to.push(Statement::SinesCosines(angles));
                 continue;
             }
             if let Some(own) = decay(number) {
-                let mut all: Vec<NumberId> = vec![own];
-                if self.is_simple(own) {
-                    for other in numbers.iter().filter_map(|&number| decay(number)) {
-                        if self.is_simple(other) && !all.contains(&other) {
-                            all.push(other);
-                        }
-                    }
-                }
-                first(to, &mut written, &all);
-                for &other in numbers {
-                    if decay(other).is_some_and(|of| all.contains(&of)) {
-                        written.insert(other);
-                    }
-                }
-                to.push(Statement::Exponentials(all));
+                let given = self.at_once(own, &decay, numbers, &mut written, to);
+                to.push(Statement::Exponentials(given));
                 continue;
             }
             written.insert(number);
             to.push(Statement::Number(number));
         }
+    }
+
+    /// Of what an elementary function is to be taken together with `own`: of all numbers that it is
+    /// taken of (`given`) and that are known before. They and the results count as written.
+    fn at_once(
+        &self,
+        own: NumberId,
+        given: &dyn Fn(NumberId) -> Option<NumberId>,
+        numbers: &[NumberId],
+        written: &mut HashSet<NumberId>,
+        to: &mut Vec<Statement>,
+    ) -> Vec<NumberId> {
+        let mut all = vec![own];
+        if self.is_simple(own) {
+            for other in numbers.iter().filter_map(|&number| given(number)) {
+                if self.is_simple(other) && !all.contains(&other) {
+                    all.push(other);
+                }
+            }
+        }
+        for &of in &all {
+            if numbers.binary_search(&of).is_ok() && written.insert(of) {
+                to.push(Statement::Number(of));
+            }
+        }
+        let results = numbers.iter().copied();
+        written.extend(results.filter(|&number| given(number).is_some_and(|of| all.contains(&of))));
+        all
     }
 
     fn paths(

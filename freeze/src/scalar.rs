@@ -74,7 +74,7 @@ arithmetic! {
 impl Rem for Recorded {
     type Output = Self;
     fn rem(self, _: Self) -> Self {
-        unimplemented!("a cycle has no remainders")
+        unreachable!("a cycle takes no remainders")
     }
 }
 
@@ -215,7 +215,7 @@ impl Real for Recorded {
     fn floor_small(self) -> Self {
         match with(|tape| tape.constant_of(self.0)) {
             Some(value) => Self::from_f64(Real::floor_small(value)),
-            None => unimplemented!("a cycle rounds nothing"),
+            None => unreachable!("a cycle rounds nothing but constants"),
         }
     }
     fn magnitude(self) -> Self {

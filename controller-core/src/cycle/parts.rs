@@ -11,7 +11,6 @@ use super::stages;
 use super::usable::{usable_posture, usable_target};
 use crate::cells::Cells;
 use crate::fault::{Fault, IndexSet, Mode};
-use crate::law::limits::wish::Ask;
 use crate::real::Real;
 use crate::task::Level;
 
@@ -199,13 +198,13 @@ impl<T: Real> Controller<T> {
             }
             Part::NullForce => stages::null_force(self, input, data),
             Part::WayOut => stages::way_out(self, input, data),
-            Part::NoWish => ask(self, data, |wish, ask| wish.begin(ask)),
+            Part::NoWish => stages::with_ask(self, data, |wish, ask| wish.begin(ask)),
             Part::LevelWish(place) => {
                 if let Some(level) = level_at(place) {
-                    ask(self, data, |wish, ask| wish.add_level(ask, level));
+                    stages::with_ask(self, data, |wish, ask| wish.add_level(ask, level));
                 }
             }
-            Part::NullWish => ask(self, data, |wish, ask| wish.add_rest(ask)),
+            Part::NullWish => stages::with_ask(self, data, |wish, ask| wish.add_rest(ask)),
             Part::WishKept => stages::with_wished(self, data, |projection, wished| {
                 projection.keep(wished);
             }),
@@ -249,15 +248,6 @@ impl<T: Real> Controller<T> {
             Group::Allocation => data.allocation.visit(cells),
         }
     }
-}
-
-/// Something of the wish.
-fn ask<T: Real>(
-    controller: &Controller<T>,
-    data: &mut Data<T>,
-    run: impl FnOnce(&mut crate::law::limits::wish::Wish<T>, &Ask<'_, T>),
-) {
-    stages::with_ask(controller, data, run);
 }
 
 impl<T: Real> Data<T> {

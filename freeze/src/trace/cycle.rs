@@ -8,7 +8,7 @@ use controller_core::joint::DOF;
 
 use super::inputs::decided;
 use super::program::Search;
-use super::tracer::{Place, Tracer, tell_fault};
+use super::tracer::{Place, Tracer, places_of, tell_fault};
 use crate::explore::{Count, Value};
 use crate::scalar::Recorded;
 use crate::tape::{Condition, FlagId, NumberId, Operation, with};
@@ -213,7 +213,6 @@ impl Found {
 /// What braking and holding an arm is.
 pub(super) fn trace_brake(tracer: &mut Tracer<'_>, input: &Input<'_, Recorded>) {
     let brake = Place::Brake;
-    let of = |groups: &[Group]| groups.iter().copied().map(Place::Of).collect::<Vec<_>>();
     let parts: [(BrakePart, &[Group]); 3] = [
         (BrakePart::Look, &[]),
         (
@@ -223,7 +222,7 @@ pub(super) fn trace_brake(tracer: &mut Tracer<'_>, input: &Input<'_, Recorded>) 
         (BrakePart::Allowed, &[Group::Allocation]),
     ];
     for (part, groups) in parts {
-        let mut writes = of(groups);
+        let mut writes = places_of(groups);
         writes.push(brake);
         let left = tracer.region(&[], &writes, &mut |tracer, state, outcome| {
             tracer.controller.run_brake_part(part, state, input);

@@ -234,10 +234,13 @@ impl<'a> Tracer<'a> {
         reads: &[Group],
         writes: &[Group],
     ) {
-        let of = |groups: &[Group]| groups.iter().copied().map(Place::Of).collect::<Vec<_>>();
-        self.region(&of(reads), &of(writes), &mut |tracer, state, _| {
-            run_stage(tracer.controller, stage, input, state.data_mut());
-        });
+        self.region(
+            &places_of(reads),
+            &places_of(writes),
+            &mut |tracer, state, _| {
+                run_stage(tracer.controller, stage, input, state.data_mut());
+            },
+        );
         self.end_stage(stage.text());
     }
 
@@ -248,10 +251,13 @@ impl<'a> Tracer<'a> {
         reads: &[Group],
         writes: &[Group],
     ) {
-        let of = |groups: &[Group]| groups.iter().copied().map(Place::Of).collect::<Vec<_>>();
-        self.region(&of(reads), &of(writes), &mut |tracer, state, _| {
-            tracer.controller.run_part(part, input, state.data_mut());
-        });
+        self.region(
+            &places_of(reads),
+            &places_of(writes),
+            &mut |tracer, state, _| {
+                tracer.controller.run_part(part, input, state.data_mut());
+            },
+        );
         self.end_stage(match part {
             Part::Target(_) | Part::Posture => StageName::Followed.text(),
             Part::WishKept | Part::Compliance | Part::Projected => StageName::Projection.text(),
@@ -330,6 +336,11 @@ impl<'a> Tracer<'a> {
     pub fn take_function(&mut self) -> Function {
         std::mem::take(&mut self.function)
     }
+}
+
+/// Groups as places.
+pub(super) fn places_of(groups: &[Group]) -> Vec<Place> {
+    groups.iter().copied().map(Place::Of).collect()
 }
 
 pub(super) fn run_stage(
